@@ -12,6 +12,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from support import fork_server
 from support.port import free_block
 from support.process import Process
 from support.wait import HANG, wait_until
@@ -160,7 +161,8 @@ def test_config(tmp_path: Path) -> None:
 def start(program: str, *arguments: str, environment: Mapping[str, str]) -> Process:
     module = "_yarpdev" if program == "main" else "_commands"
     code = f"from yarp.{module} import {program}; {program}()"
-    return Process([sys.executable, "-c", code, *arguments], env=environment)
+    command = [sys.executable, "-c", code, *arguments]
+    return Process(command, env=environment, start=fork_server.start)
 
 
 def test_yarpserver_and_yarp(environment: Mapping[str, str]) -> None:

@@ -12,6 +12,7 @@ from collections.abc import Mapping
 from pathlib import Path
 
 import pytest
+from support import fork_server
 from support.cpp import CppYarp
 from support.peer import brings
 from support.port import free_block
@@ -30,7 +31,8 @@ def expected(script: Path) -> list[str]:
 
 @pytest.mark.parametrize("script", SCRIPTS, ids=lambda path: path.stem)
 def test_compat_prints_what_cpp_prints(script: Path, environment: Mapping[str, str]) -> None:
-    with Process([sys.executable, RUNNER, script], env=environment) as process:
+    command = [sys.executable, RUNNER, script]
+    with Process(command, env=environment, start=fork_server.start) as process:
         code = process.wait(HANG)
     assert process.stdout.splitlines() == expected(script), process.stderr
     assert code == 0, process.stderr

@@ -10,6 +10,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from support import fork_server
 from support.cpp import CppYarp
 from support.peer import brings
 from support.port import free_block
@@ -44,7 +45,8 @@ def dumper(
     """Our program, ready, in a working directory."""
     code = "from yarp._datadumper import main; main()"
     there = {**environment, **server.environment}
-    with Process([sys.executable, "-c", code, *options], env=there, cwd=folder) as process:
+    command = [sys.executable, "-c", code, *options]
+    with Process(command, env=there, cwd=folder, start=fork_server.start) as process:
         process.wait_line("Data stored in", timeout=HANG)
         yield process
 
@@ -140,7 +142,8 @@ def test_wrong_arguments(
         (("--type", "video"), "films are not written; there are bottle, image"),
         (("--help",), "--downsample N"),
     ):
-        with Process([sys.executable, "-c", code, *options], env=there, cwd=tmp_path) as process:
+        command = [sys.executable, "-c", code, *options]
+        with Process(command, env=there, cwd=tmp_path, start=fork_server.start) as process:
             assert process.wait(HANG) == int("--help" not in options)
         assert said in process.stderr + process.stdout
     assert not [*tmp_path.glob("dump*")]

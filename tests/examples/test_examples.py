@@ -10,6 +10,7 @@ from contextlib import ExitStack
 from pathlib import Path
 
 import pytest
+from support import fork_server
 from support.process import Process
 from support.wait import HANG
 
@@ -70,7 +71,10 @@ FILES = sorted(path for path in EXAMPLES.iterdir() if path.suffix in (".py", ".s
 def start(name: str, *arguments: str, **variables: str) -> Process:
     """Start an example in an environment that knows no name server but what is given."""
     return Process(
-        [sys.executable, EXAMPLES / name, *arguments], env=environment(variables), cwd=ROOT
+        [sys.executable, EXAMPLES / name, *arguments],
+        env=environment(variables),
+        cwd=ROOT,
+        start=fork_server.start,
     )
 
 

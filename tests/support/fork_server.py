@@ -47,7 +47,7 @@ class Program:
         (stdin, given), (taken, stdout), (told, stderr), (self._end, status) = (
             os.pipe() for _ in range(4)
         )
-        request = {"args": self.args[2:], "env": dict(env), "cwd": os.fspath(cwd or os.getcwd())}
+        request = {"args": self.args[1:], "env": dict(env), "cwd": os.fspath(cwd or os.getcwd())}
         theirs = [stdin, stdout, stderr, status]
         link = _link()
         socket.send_fds(link, [json.dumps(request).encode()], theirs)
@@ -97,8 +97,11 @@ def start(
     cwd: str | os.PathLike[str] | None,
     **options: Any,
 ) -> Any:
-    """Start `python -m MODULE ...`, as `subprocess.Popen` does with the same options."""
-    if hasattr(os, "pidfd_open") and _of_the_start(env) == _of_the_start(_ENVIRONMENT):
+    """Start `python -m MODULE ...`, `python -c CODE ...` or `python FILE ...`, as
+    `subprocess.Popen` does with the same options."""
+    known = args[0] == sys.executable and (args[1][0] != "-" or args[1] in ("-m", "-c"))
+    same = _of_the_start(env) == _of_the_start(_ENVIRONMENT)
+    if known and same and hasattr(os, "pidfd_open"):
         return Program(args, env, cwd)
     return subprocess.Popen(args, env=env, cwd=cwd, **options)
 
@@ -107,7 +110,7 @@ def _of_the_start(env: Mapping[str, str]) -> set[tuple[str, str]]:
     return {
         (name, value)
         for name, value in env.items()
-        if name.startswith(AT_THE_START) and name != "PYTHONFAULTHANDLER"
+        if name.startswith(AT_THE_START) and name not in ("PYTHONFAULTHANDLER", "PYTHONPATH")
     }
 
 
@@ -197,10 +200,30 @@ def _become(request: dict[str, Any], descriptors: list[int]) -> None:
     os.chdir(request["cwd"])
     os.environ.clear()
     os.environ.update(request["env"])
-    sys.path.insert(0, request["cwd"])
     faulthandler.enable()
-    sys.argv = ["yarpy", *request["args"][1:]]
-    runpy.run_module(request["args"][0], run_name="__main__", alter_sys=True)
+    what, *words = request["args"]
+    wanted = request["env"].get("PYTHONPATH", "")
+    sys.path[:0] = ["", *filter(None, wanted.split(os.pathsep))]
+    if what == "-m":
+        sys.path[0], sys.argv = request["cwd"], words
+        runpy.run_module(words[0], run_name="__main__", alter_sys=True)
+        return
+    # As Python does it: names of the program are those of this module, and live as long.
+    code, names = "", vars(sys.modules["__main__"])
+    if what == "-c":
+        code, file = words.pop(0), "<string>"
+    else:
+        file, sys.path[0] = what, os.path.dirname(os.path.abspath(what))
+        with open(what, encoding="utf-8") as script:
+            code = script.read()
+    sys.argv = [what, *words]
+    for name in [name for name in names if not name.startswith("__")]:
+        del names[name]
+    if what == "-c":
+        del names["__file__"]
+    else:
+        names["__file__"] = file
+    exec(compile(code, file, "exec"), names)
 
 
 if __name__ == "__main__":

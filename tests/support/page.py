@@ -15,12 +15,12 @@ import json
 import os
 import re
 import signal
-import subprocess
 import sys
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
+from support import fork_server
 from support.port import free_block
 from support.process import Process
 from support.wait import HANG
@@ -93,12 +93,10 @@ def run(page: Path, directory: Path, port: int, cpp: Mapping[str, str] | None = 
     source = program(page, cpp is not None)
     script = directory / page.name
     script.write_text(_renumbered(source, FIRST, port))
-    done = subprocess.run(
+    with Process(
         [sys.executable, script],
-        capture_output=True,
-        text=True,
-        timeout=3 * HANG,
         cwd=directory,
+        start=fork_server.start,
         env={
             **_clean(),
             "PATH": f"{Path(sys.executable).parent}{os.pathsep}{os.environ['PATH']}",
@@ -109,9 +107,11 @@ def run(page: Path, directory: Path, port: int, cpp: Mapping[str, str] | None = 
             "PAGE_PORT": str(port),
             "PAGE_CPP": json.dumps(cpp),
         },
-    )
+    ) as done:
+        done.end_input()
+        code = done.wait(3 * HANG)
     said = f"{done.stdout}\n{done.stderr}"
-    assert done.returncode == 0, f"{page.name} fails:\n{said}"
+    assert code == 0, f"{page.name} fails:\n{said}"
     output = _renumbered(done.stdout, port, FIRST).splitlines()
     for text in printed(source):
         while output and _comparable(output[0]) != _comparable(text):

@@ -14,11 +14,14 @@ from support.process import Process
 
 pytestmark = pytest.mark.skipif(not hasattr(os, "pidfd_open"), reason="Linux alone has pidfd_open")
 STARTS = pytest.mark.parametrize("start", [subprocess.Popen, fork_server.start])
-# A module that a program finds where it is started, as with `python -m`.
+KINDS = pytest.mark.parametrize("kind", ["-m", "-c", "file"])
 CODE = """
 import atexit, os, sys
 atexit.register(print, "over")
-print(__name__, sys.argv[1:], os.getcwd(), os.environ.get("MINE"), os.getsid(0) == os.getpid())
+def later():
+    return sys.argv[1:], os.path.basename(globals().get("__file__", "")), "runpy" in globals()
+print(sys.path[0], [one for one in sys.path if "wanted" in one])
+print(__name__, later(), os.getcwd(), os.environ.get("MINE"), os.getsid(0) == os.getpid())
 print(sys.stdout.isatty(), sys.stdout.encoding, sys.stdout.line_buffering, sys.flags.dev_mode)
 print(sorted(os.listdir("/proc/self/fd"))[:-1], file=sys.stderr)
 for line in sys.stdin:
@@ -30,20 +33,26 @@ for line in sys.stdin:
 """
 
 
-def program(start, folder: Path, *words: str, **variables: str) -> Process:
-    (folder / "prog.py").write_text(CODE, encoding="utf-8")
-    args = [sys.executable, "-m", "prog", *words]
+def program(start, folder: Path, *words: str, kind: str = "-m", **variables: str) -> Process:
+    script = folder / "prog.py"
+    script.write_text(CODE, encoding="utf-8")
+    how = {"-m": ["-m", "prog"], "-c": ["-c", CODE], "file": [str(script)]}[kind]
+    args = [sys.executable, *how, *words]
     return Process(args, env={**os.environ, **variables}, cwd=folder, start=start)
 
 
+@KINDS
 @STARTS
-def test_what_a_program_has(start, tmp_path: Path) -> None:
-    with program(start, tmp_path, "a", "b", MINE="5") as one:
+def test_what_a_program_has(start, kind: str, tmp_path: Path) -> None:
+    variables = {"MINE": "5", "PYTHONPATH": "/wanted/a:/wanted/b"}
+    with program(start, tmp_path, "a", "b", kind=kind, **variables) as one:
         one.write_line("hello")
         one.write_line("exit 3")
         assert one.wait() == 3 == one.returncode
+    name = "" if kind == "-c" else "prog.py"
     assert one.stdout.splitlines() == [
-        f"__main__ ['a', 'b'] {tmp_path} 5 True",
+        f"{'' if kind == '-c' else tmp_path} ['/wanted/a', '/wanted/b']",
+        f"__main__ (['a', 'b'], '{name}', False) {tmp_path} 5 True",
         "False utf-8 False False",
         "read hello",
         "read exit 3",

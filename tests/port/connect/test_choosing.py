@@ -10,6 +10,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from support import fork_server
 from support.process import Process
 from support.wait import wait_until
 
@@ -120,7 +121,8 @@ def server(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> Iterator[yarpy.Na
 
 
 def reader(name: str, *arguments: str) -> Process:
-    process = Process([sys.executable, "-c", READER, name, *arguments], env=os.environ)
+    program = [sys.executable, "-c", READER, name, *arguments]
+    process = Process(program, env=os.environ, start=fork_server.start)
     process.wait_line("^open$")
     return process
 
@@ -173,7 +175,10 @@ def test_a_program_that_sees_nothing_of_ours(
     code = "from yarpy.transports.shared import memory as m\n"
     code += "m._path = lambda number: chr(0) + 'elsewhere'\n"
     program = [sys.executable, "-c", code + READER, "/in"]
-    with yarpy.Port("/out") as out, Process(program, env=os.environ) as process:
+    with (
+        yarpy.Port("/out") as out,
+        Process(program, env=os.environ, start=fork_server.start) as process,
+    ):
         process.wait_line("^open$")
         assert out.connect("/in").carrier == "tcp"
         out.write(picture(1))
