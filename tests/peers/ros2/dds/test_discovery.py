@@ -59,3 +59,24 @@ def test_what_is_no_list_of_nodes_is_ignored(here: None, own: str) -> None:
         found.close()
         found.close()
         pump.close()
+
+
+def test_who_comes_wakes_nobody_for_ever(here: None, own: str) -> None:
+    """That a writer has come is a status of a reader, which stays until somebody takes it."""
+    from cyclonedds.core import WaitSet
+    from cyclonedds.domain import DomainParticipant
+
+    sides = [(dds, Pump(dds)) for dds in (DomainParticipant(0), DomainParticipant(0))]
+    found, other = (Discovery(dds, pump) for dds, pump in sides)
+    waiting: Any = WaitSet(sides[0][0])
+    try:
+        found.nodes(set())
+        other.add(Node(own, "other"))
+        wait_until(lambda: Node(own, "other") in found.nodes({sides[1][0].guid}))
+        waiting.attach(found._reader)
+        wait_until(lambda: waiting.wait(0) == 0)
+    finally:
+        for each in (found, other):
+            each.close()
+        for _, pump in sides:
+            pump.close()

@@ -17,7 +17,7 @@ from uuid import UUID
 from yarpy.errors import DecodeError
 from yarpy.limit import ROS2_PROGRAMS
 from yarpy.log import logger
-from yarpy.peers.ros2.dds.library import delete
+from yarpy.peers.ros2.dds.library import delete, load
 from yarpy.peers.ros2.dds.pump import Pump
 from yarpy.peers.ros2.dds.qos import dds_qos
 from yarpy.peers.ros2.dds.raw import raw_class
@@ -102,6 +102,8 @@ class Discovery:
         self._class = raw_class(self._kind._definition.struct)
         self._topic = topic.Topic(self._dds, TOPIC, self._class)
         made: Any = sub.DataReader(self._dds, self._topic, qos=dds_qos(HEARD, hash_, writes=False))
+        # That others come and go stays news until somebody takes it, and would wake for ever.
+        made.set_status_mask(load().DDSStatus.DataAvailable)
         self._reader = made
         made = pub.DataWriter(self._dds, self._topic, qos=dds_qos(TOLD, hash_, writes=True))
         self._writer = made
