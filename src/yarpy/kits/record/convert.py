@@ -14,7 +14,7 @@ import json
 from collections.abc import Collection, Iterator, Mapping
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any, Literal
+from typing import TYPE_CHECKING, Any, Literal
 
 from yarpy.errors import LocalProtocolError, UnknownName
 from yarpy.kits.record.bag.reader import BagStorage
@@ -27,6 +27,9 @@ from yarpy.kits.record.mcap.storage import FOREVER, McapStorage
 from yarpy.kits.record.mcap.writer import McapWriter
 from yarpy.kits.record.recording import Recording
 from yarpy.kits.record.sink import ENDING
+
+if TYPE_CHECKING:
+    from yarpy.kits.record.matlab.writer import MatWriter
 
 
 @dataclass
@@ -42,7 +45,7 @@ def convert(
     recording: Recording,
     path: str | Path,
     *,
-    form: Literal["mcap", "dumper", "bag1", "bag2"] = "mcap",
+    form: Literal["mcap", "dumper", "bag1", "bag2", "robometry"] = "mcap",
     compression: str = "none",
     times: Times = "",
     ports: Collection[str] | None = None,
@@ -53,7 +56,8 @@ def convert(
     """Write a recording into the new file or folder `path`.
 
     form: dumper writes the folders of C++ yarpdatadumper, with these `times` (see `DumperWriter`);
-    bag1 a bag of ROS 1, bag2 one of ROS 2: what came from ROS as it was.
+    bag1 a bag of ROS 1, bag2 one of ROS 2: what came from ROS as it was; robometry a `.mat` and its
+    `.json`, with what is numbers.
     start, duration: the seconds that are left out at the beginning, and those that are written.
     rates: the largest number of messages a second, by patterns of names: `{"/cam/*": 10}`.
     Raises FileExistsError, OSError; UnknownName for a port that is not in it, UnknownPlugin.
@@ -65,9 +69,13 @@ def convert(
     begin = min((storage.begin for storage in recording.storages if storage.end), default=0)
     begin += round(start * SECOND)
     end = FOREVER if duration is None else begin + round(duration * SECOND)
-    sink: DumperWriter | McapWriter | BagWriter
+    sink: DumperWriter | McapWriter | BagWriter | MatWriter
     if form == "dumper":
         sink = DumperWriter(path, times)
+    elif form == "robometry":
+        from yarpy.kits.record.matlab.writer import MatWriter
+
+        sink = MatWriter(path, _facts(recording))
     elif form != "mcap":
         sink = BagWriter(path, 1 if form == "bag1" else 2)
     else:
@@ -98,7 +106,7 @@ def convert(
                 continue
             try:
                 if isinstance(item, Other):
-                    if isinstance(sink, DumperWriter):
+                    if not isinstance(sink, McapWriter | BagWriter):
                         found.left_out += 1
                         continue
                     sink.add_other(item)

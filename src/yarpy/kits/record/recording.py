@@ -19,6 +19,7 @@ from yarpy.errors import DecodeError, UnknownName
 from yarpy.kits.record.bag.reader import BagStorage, is_bag
 from yarpy.kits.record.dumper.reader import DumperStorage
 from yarpy.kits.record.envelope import SECOND
+from yarpy.kits.record.matlab.layout import CONFIGURATION, ENDING
 from yarpy.kits.record.mcap.layout import Damaged
 from yarpy.kits.record.mcap.storage import FOREVER, McapStorage
 from yarpy.kits.record.recorded import PortFacts, Recorded
@@ -206,7 +207,8 @@ class Recording:
 
 def open_recording(*paths: str | Path) -> Recording:
     """Open files and folders as one recording, finished or not: MCAP files, folders of these,
-    folders that C++ yarpdatadumper has written, bags of ROS (whose messages are not YARP's).
+    folders that C++ yarpdatadumper has written, bags of ROS (whose messages are not YARP's), files
+    of robometry (`.mat`, or the `.json` that wrote some).
 
     Raises MissingFile; DecodeError for what is no recording, UnknownPlugin without a library.
     """
@@ -229,5 +231,9 @@ def _storages(path: Path) -> Iterator[Storage]:
         yield from map(McapStorage, files)
         if not files:
             yield DumperStorage(path)
+    elif path.suffix in (ENDING, CONFIGURATION):
+        from yarpy.kits.record.matlab.reader import MatStorage, files_of  # numpy
+
+        yield from map(MatStorage, files_of(path))
     else:
         yield McapStorage(path)

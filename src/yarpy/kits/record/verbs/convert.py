@@ -7,6 +7,7 @@
     yarpy convert one.mcap two.mcap -o both --compress zstd
     yarpy convert drive.bag -o drive                        a bag of ROS 1, to the byte
     yarpy convert walk.mcap -o walk_bag --format bag2       for ros2 bag play
+    yarpy convert walk.mcap -o walk --format robometry      a .mat for MATLAB, and its .json
     yarpy convert 1.mcap 2.mcap -o reach --format lerobot --state /arm/state:o --action /goal:o
                                                             an episode of each file
 
@@ -34,8 +35,8 @@ if TYPE_CHECKING:
 @click.option("-o", "--output", "path", required=True, metavar="NAME",
               help="Write NAME.mcap, or the folder NAME.")  # fmt: skip
 @click.option("--format", "format_", default="mcap", metavar="NAME",
-              type=click.Choice(["mcap", "dumper", "bag1", "bag2", "lerobot"]),
-              help="mcap, dumper (of C++), bag1, bag2 (of ROS 1, 2), lerobot.")  # fmt: skip
+              type=click.Choice(["mcap", "dumper", "bag1", "bag2", "robometry", "lerobot"]),
+              help="mcap, dumper (of C++), bag1, bag2 (of ROS), robometry, lerobot.")  # fmt: skip
 @click.option("--compress", "compression", default="none", metavar="NAME",
               type=click.Choice(["none", "lz4", "zstd"]), help="none, lz4 or zstd.")  # fmt: skip
 @click.option("--times", default="", show_default=False, metavar="NAME",

@@ -1,0 +1,1 @@
+"""Files of MATLAB, as robometry writes them."""
