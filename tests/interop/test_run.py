@@ -1,6 +1,7 @@
-"""C++ yarprun as the client of `yarpy run --server`.
+"""C++ yarprun and yarpmanager-console as clients of `yarpy run --server`.
 
-The server of the C++ wheel cannot be met: it ends with "Can't open pipe" before it opens its port.
+The server of the C++ wheel cannot be met: it ends with "Can't open pipe" before it opens its port,
+and its manager starts nothing on its own computer, for the same reason.
 tests/kits/launch/run/test_client.py has what other builds of it answer.
 """
 
@@ -13,6 +14,7 @@ from support.cpp import CppYarp
 from support.wait import HANG
 
 import yarpy
+from yarpy.kits.launch.application.load import load
 from yarpy.kits.launch.run.client import RunClient
 from yarpy.kits.launch.run.server import RunServer
 
@@ -58,6 +60,36 @@ def test_what_a_terminal_of_cpp_reads_and_writes(network: CppYarp, server: RunSe
         _until(lambda: yarpy.exists(f"{uuid}/stdio:o", f"{uuid}/stdin"))
         typed.write_line(r'"echo $((40 + 2))\n"')
         heard.wait_line(r"42")
+
+
+APPLICATION = """\
+<application><name>both</name>
+<module><name>PROGRAM</name><parameters>read /listener</parameters><node>/nodeA</node></module>
+<module><name>sh</name><parameters>-c "sleep 600 | PROGRAM write /speaker"</parameters>
+<node>/nodeA</node></module>
+<connection><from>/speaker</from><to>/listener</to><protocol>tcp</protocol></connection>
+</application>
+"""
+
+
+def test_an_application_of_its_manager(network: CppYarp, server: RunServer, tmp_path: Path) -> None:
+    """The same file is what `yarpy up` reads."""
+    file = tmp_path / "both.xml"
+    file.write_text(APPLICATION.replace("PROGRAM", str(network.program())), encoding="utf-8")
+    assert [one.node for one in load(file).modules] == ["/nodeA", "/nodeA"]
+    with (
+        network.popen("--application", str(file), program="yarpmanager-console") as manager,
+        RunClient("/nodeA") as node,
+    ):
+        manager.write_line("run")
+        _until(lambda: len(node.running()) == 2)
+        _until(lambda: yarpy.query("/speaker") and yarpy.query("/listener"))
+        manager.write_line("check state")
+        _until(lambda: manager.stdout.count("<RUNNING>") == 2)
+        manager.write_line("connect 0")
+        _until(lambda: yarpy.is_connected("/speaker", "/listener"))
+        manager.write_line("stop")
+        _until(lambda: not node.running())
 
 
 def _until(condition) -> None:
