@@ -586,7 +586,7 @@ _TYPED = {"callerid": "/a", "md5sum": "*", "type": "*"}
 _SUBSCRIBER = encode_header(_TYPED | {"topic": "/topic", "message_definition": "string data\n"})
 _CLIENT = encode_header(_TYPED | {"service": "/add", "persistent": "1"})
 _DEVICES = (
-    State(2, {}).to_bottle(),
+    codec.decode(State(2, {}).to_bytes()),
     yarpy.Bottle([[[[["name", "frame"]]] for _ in KINDS]]),
 )
 _FRAMES = (Frame({"a": np.arange(3.0), "b": [b"x", (1, {2})]}, 1, 2.0, "/x"), Frame([None, 1j]))
