@@ -36,7 +36,11 @@ _CLIENTS: Final = (
 )
 
 #: What a type needs beside yarpy itself.
-_EXTRAS: Final = {"opencv_grabber": "vision"}
+_EXTRAS: Final = {
+    "dynamixelServos": "hardware",
+    "feetechServos": "hardware",
+    "opencv_grabber": "vision",
+}
 
 #: Type -> where it is in the kit of devices.
 _DEVICES: Final[dict[str, str]] = {

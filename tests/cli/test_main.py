@@ -1,5 +1,6 @@
 """The frame of the command: verbs are found, errors are one line, exit codes are as promised."""
 
+import os
 import shlex
 import subprocess
 import sys
@@ -32,6 +33,26 @@ def test_every_verb_explains_itself(verb, here):
     assert said.code == 0
     assert said.out.startswith(f"Usage: yarpy {verb} ")
     assert here("help", verb).out == said.out
+
+
+@pytest.mark.skipif(not hasattr(os, "fork"), reason="this system has no fork")
+def test_every_verb_loads_alone():
+    """Nothing else has been imported before, as when a person starts it."""
+    program = (
+        "import os, sys\n"
+        "import yarpy.cli.main as main\n"
+        "for verb in sys.argv[1:]:\n"
+        "    child = os.fork()\n"
+        "    if not child:\n"
+        "        assert main.find_verb(verb) is not None\n"
+        "        os._exit(0)\n"
+        "    if os.waitpid(child, 0)[1]:\n"
+        "        print(verb)\n"
+    )
+    said = subprocess.run(
+        [sys.executable, "-c", program, *VERBS], capture_output=True, text=True, timeout=100
+    )
+    assert (said.returncode, said.stdout) == (0, ""), said.stderr
 
 
 def test_every_verb_is_in_the_documentation():

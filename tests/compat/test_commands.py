@@ -43,6 +43,7 @@ TRANSLATED = [
     ("thrift", "--check --folder lib cam.thrift", "idl thrift --check --folder lib cam.thrift"),
     ("thrift", "--help", "idl thrift --help"),
     ("thrift", "-gen py -I include -v a.thrift b.thrift", None),
+    ("thrift", "--gen ts a.thrift", "idl thrift --gen ts a.thrift"),
     ("thrift", "--I include a.thrift", "idl thrift --folder include a.thrift"),
     ("rosmsg", "--name /typ@/yarpros", "idl rosmsg --name /typ@/yarpros"),
     ("rosmsg", "--help", "idl rosmsg --help"),
@@ -117,7 +118,8 @@ def test_what_the_help_shows_is_taken() -> None:
         for option in command.params:
             for word in option.opts:
                 if word.startswith("--"):
-                    assert word in translate([word, ".", "a/B.thrift"])
+                    value = "ts" if word == "--gen" else "."
+                    assert word in translate([word, value, "a/B.thrift"])
 
 
 @pytest.mark.parametrize(

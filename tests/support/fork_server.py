@@ -25,6 +25,7 @@ import signal
 import socket
 import subprocess
 import sys
+import threading
 from collections.abc import Mapping, Sequence
 from functools import cache
 from typing import IO, Any, Final
@@ -33,6 +34,7 @@ LARGEST: Final = 100_000  # bytes of a request
 # Variables that count when Python starts, or a library of C is loaded.
 AT_THE_START: Final = ("PYTHON", "LC_", "LANG", "LD_", "TZ")
 _ENVIRONMENT: Final = dict(os.environ)
+_TURN: Final = threading.Lock()  # one request and its answer at a time
 ROOMS: Final = ("wire", "data", "names", "network", "transports", "link", "port", "nameserver")
 
 
@@ -50,8 +52,9 @@ class Program:
         request = {"args": self.args[1:], "env": dict(env), "cwd": os.fspath(cwd or os.getcwd())}
         theirs = [stdin, stdout, stderr, status]
         link = _link()
-        socket.send_fds(link, [json.dumps(request).encode()], theirs)
-        self.pid = int(link.recv(LARGEST))
+        with _TURN:
+            socket.send_fds(link, [json.dumps(request).encode()], theirs)
+            self.pid = int(link.recv(LARGEST))
         for descriptor in theirs:
             os.close(descriptor)
         self.stdin: IO[bytes] = open(given, "wb")  # noqa: SIM115

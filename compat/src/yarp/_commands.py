@@ -104,7 +104,8 @@ def translate_manager(arguments: Sequence[str]) -> list[str]:
 
 
 def translate_thrift(arguments: Sequence[str]) -> list[str]:
-    """`yarpidl_thrift --gen yarp [-o DIR] [-I DIR] FILE...`, which writes Python here."""
+    """`yarpidl_thrift --gen yarp [-o DIR] [-I DIR] FILE...`, which writes Python here; `--gen ts`
+    writes TypeScript."""
     found, files = ["idl", "thrift"], list[str]()
     if _HELP.intersection(arguments):
         return [*found, "--help"]
@@ -112,8 +113,12 @@ def translate_thrift(arguments: Sequence[str]) -> list[str]:
     for word in words:
         if word in ("-gen", "--gen"):
             language = next(words, "").partition(":")[0]
-            if language not in ("yarp", "py", "python"):
-                raise Wrong(f'no generator "{language}": this one writes Python (--gen py)')
+            if language not in ("yarp", "py", "python", "ts"):
+                raise Wrong(
+                    f'no generator "{language}": this one writes Python (--gen py) and TypeScript '
+                    "(--gen ts)"
+                )
+            found += ["--gen", "ts"] if language == "ts" else []
         elif word in ("-o", "-out", "--out"):
             found += ["--out", next(words, ".")]
         elif word == "--check":

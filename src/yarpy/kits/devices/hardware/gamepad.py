@@ -13,7 +13,7 @@ Source: Documentation/input/joydev of Linux.
 from __future__ import annotations
 
 import os
-import select
+import selectors
 import sys
 import threading
 from contextlib import ExitStack
@@ -27,6 +27,7 @@ from yarpy.kits.devices.interfaces.joypad import JoypadState
 from yarpy.kits.devices.simulated.joypad import SimulatedJoypad
 from yarpy.log import logger
 from yarpy.names.base import NameClient
+from yarpy.transports.descriptor import has_input
 
 log = logger("yarpy.devices")
 
@@ -57,7 +58,7 @@ class Gamepad(SimulatedJoypad, Closeable):
             resources.callback(os.close, self._file)
             self._wake, end = os.pipe()
             resources.callback(os.close, self._wake)
-            while select.select([self._file], [], [], 0)[0] and self._take():
+            while has_input(self._file, 0.0) and self._take():
                 pass
             thread = threading.Thread(target=self._run, name=f"yarpy device {path}", daemon=True)
             thread.start()
@@ -66,11 +67,14 @@ class Gamepad(SimulatedJoypad, Closeable):
             self._resources = resources.pop_all()
 
     def _run(self) -> None:
-        while self._wake not in select.select([self._file, self._wake], [], [])[0]:
-            if not self._take():
-                log.warning("%s: nothing is plugged in there any more", self.path)
-                self._show([0.0] * len(self._buttons), [0.0] * len(self._axes))
-                return
+        with selectors.DefaultSelector() as selector:
+            selector.register(self._wake, selectors.EVENT_READ)
+            selector.register(self._file, selectors.EVENT_READ)
+            while all(key.fd != self._wake for key, _ in selector.select()):
+                if not self._take():
+                    log.warning("%s: nothing is plugged in there any more", self.path)
+                    self._show([0.0] * len(self._buttons), [0.0] * len(self._axes))
+                    return
 
     def _take(self) -> bool:
         """Take what the system tells; False once it is unplugged."""
