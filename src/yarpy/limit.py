@@ -159,6 +159,7 @@ RECORDED_SUMMARY: Final = 1 << 28  # bytes at the end of a file that say what is
 RECORDED_TEXT: Final = 1 << 20  # bytes of a name or a note
 DUMPED_LINE: Final = 1 << 26  # bytes of a line of a recording of C++
 RECORDED_NOTES: Final = 10_000  # notes of one file that are shown
+MATLAB_FILE: Final = 1 << 30  # bytes of all values of a file of MATLAB, which are in memory at once
 VIEW_ORDER: Final = 1 << 18  # bytes of what a page says at a time
 VIEW_CLIENTS: Final = 64  # connections of pages at a time
 VIEW_SUBSCRIPTIONS: Final = 1000  # of one page

@@ -1,8 +1,9 @@
 """Files of robometry that are read: a `.mat` of any version, or the `.json` that wrote some.
 
-Rules: the library reads a whole file, so that it takes as much memory. What it makes of a damaged
-one becomes a DecodeError. A sample is a Vector, or a Matrix where it has rows and columns, or a
-text; other cells and structures are left out, and told. Times are those of sending and of receipt.
+Rules: the library reads a whole file, which is refused if it would take too much memory. What it
+makes of a damaged one becomes a DecodeError. A sample is a Vector, or a Matrix where it has rows
+and columns, or a text; other cells and structures are left out, and told. Times are those of
+sending and of receipt.
 """
 
 from __future__ import annotations
@@ -21,6 +22,7 @@ from yarpy.data.sig.vector import Vector
 from yarpy.errors import DecodeError, MissingFile, UnknownPlugin
 from yarpy.kits.record.envelope import SECOND, stamp_text
 from yarpy.kits.record.matlab.layout import CONFIGURATION, DESCRIPTION, ENDING, NEEDS, ROBOT, leaves
+from yarpy.kits.record.matlab.size import check_size
 from yarpy.kits.record.mcap.layout import Damaged
 from yarpy.kits.record.mcap.storage import FOREVER
 from yarpy.kits.record.recorded import PortFacts, Recorded
@@ -62,7 +64,10 @@ class MatStorage:
         self.damages: list[Damaged] = []
         try:
             self.size = self.path.stat().st_size
+            check_size(self.path)
             found = read_mat(self.path)
+        except DecodeError:
+            raise
         except OSError as error:
             if error.errno is None:  # of the library for HDF5
                 raise DecodeError(f"{path}: {error}") from error
