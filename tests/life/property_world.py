@@ -192,6 +192,8 @@ class World:
             life = self.born(index)
             life.port = self.make(life)
             self.now[index] = life
+            if self.ending:  # since a moment, and whoever closes all has not seen it
+                self.close(life)
 
     async def open_soon(self, index: int) -> None:
         """The same for one of the loop."""
