@@ -14,6 +14,7 @@ from yarpy.carriers.base import Delivery
 from yarpy.carriers.own.tcp import FastTcp
 from yarpy.errors import LinkClosed
 from yarpy.link.ending import moment
+from yarpy.link.send import backlog
 from yarpy.link.send.backlog import Backlog
 from yarpy.link.send.slow_reader import STRANGERS
 from yarpy.wire.message import Packet
@@ -38,6 +39,30 @@ def test_who_is_quick_gets_everything_in_the_writers_thread() -> None:
             assert link.box.offer(Packet([number])) is True
         assert link.thread is None
         assert len(set(read_messages(far, 50, ack=False))) == 50
+
+
+def test_it_leaves_at_once_though_another_thread_is_at_the_connection_for_a_moment(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    """As the sweeper of a burst."""
+    monkeypatch.setattr(backlog, "MOMENT", HANG)  # moments are long on a busy computer
+    with connected(Held) as (link, far):
+        taken = threading.Event()
+
+        def work() -> None:
+            with link.sender.lock:
+                taken.set()
+                time.sleep(0.002)
+
+        for number in range(5):
+            taken.clear()
+            thread = threading.Thread(target=work)
+            thread.start()
+            assert taken.wait(HANG)
+            assert link.box.offer(Packet([number])) is True
+            thread.join()
+        assert link.thread is None
+        assert len(set(read_messages(far, 5, ack=False))) == 5
 
 
 @pytest.mark.parametrize(("kind", "most"), [(Held, 3), (HeldBytes, 2)])

@@ -7,10 +7,12 @@ where there is no room the newest message is dropped. (A high-water mark.)
 
 from __future__ import annotations
 
+import time
 from collections import deque
 from typing import TYPE_CHECKING
 
 from yarpy.link.ending import NOW
+from yarpy.link.send.lossy import MOMENT
 from yarpy.link.send.outbox import Outbox, Rest
 from yarpy.link.send.sender import NOTHING, PART, Hold
 
@@ -39,7 +41,8 @@ class Backlog(Outbox):
             sender.counter.drops += 1
             raise sender.gone()
         if not queue.pending:
-            hold = Hold(sender, NOW)
+            # Another thread that does something short under the lock, as the sweeper of a burst.
+            hold = Hold(sender, NOW if sender.halfway else time.monotonic() + MOMENT)
             try:
                 sent = sender.transmit(packet, NOW) if hold.take() else NOTHING
             finally:
