@@ -24,7 +24,7 @@ import tarfile
 import tempfile
 import zipfile
 from collections.abc import Iterable
-from concurrent.futures import ThreadPoolExecutor
+from concurrent.futures import ProcessPoolExecutor
 from functools import cache, partial
 from pathlib import Path
 from xml.etree import ElementTree
@@ -213,7 +213,7 @@ def test_all(folder: Path, paths: Iterable[Path]) -> tuple[dict[str, int], list[
     """Run these files and folders, some at a time, and tell of each; return what `test` does of all
     together."""
     total, wrong = {"tests": 0, "failures": 0, "errors": 0, "skipped": 0}, []
-    with ThreadPoolExecutor(AT_A_TIME) as pool:
+    with ProcessPoolExecutor(AT_A_TIME) as pool:  # each has a guard of its own
         for counts, bad in pool.map(partial(_told, folder), paths):
             for name, count in counts.items():
                 total[name] += count
