@@ -2,6 +2,11 @@
 
 from __future__ import annotations
 
+import inspect
+import sys
+from types import FrameType
+from typing import Any
+
 from support.wait import HANG
 
 import yarpy
@@ -39,3 +44,38 @@ def test_what_ends_is_counted_as_past_once(names: yarpy.LocalNames) -> None:
         out.disconnect("/in")
         assert not out._hub.outputs.drop(link)
         assert out.stats.past.outputs.messages == 1
+
+
+def test_what_a_signal_handler_drops_meanwhile_stays_dropped(names: yarpy.LocalNames) -> None:
+    """The lock lets the handler in: it runs above the frame that has it."""
+    with (
+        yarpy.Port("/out", names=names) as out,
+        yarpy.Port("/a", names=names),
+        yarpy.Port("/b", names=names),
+    ):
+        out.connect("/a")
+        out.connect("/b")
+        outputs = out._hub.outputs
+        one, other = outputs.links
+        file, handled = inspect.getfile(type(outputs)), False
+
+        def handler(frame: FrameType, event: str, _: object) -> Any:
+            """At the end of each generator there, as the one that leaves `one` out."""
+            nonlocal handled
+            if frame.f_code.co_filename != file or frame.f_code.co_name != "<genexpr>":
+                return None
+            if event == "return" and not handled:
+                handled = True
+                outputs.drop(other)
+            return handler
+
+        before = sys.gettrace()
+        sys.settrace(handler)
+        try:
+            outputs.drop(one)
+        finally:
+            sys.settrace(before)
+        assert handled
+        assert outputs.links == ()
+        one.close()
+        other.close()

@@ -296,8 +296,14 @@ class Inputs:
             known = link in (*self.links, *self.leaving)
             if known:
                 self.past.add(link.counter, link.lost)
-            self.links = tuple(item for item in self.links if item is not link)
-            self.leaving = tuple(item for item in self.leaving if item is not link)
+            while True:
+                before, leaving = self.links, self.leaving
+                left = tuple(item for item in before if item is not link)
+                gone = tuple(item for item in leaving if item is not link)
+                # Else a signal handler has forgotten others meanwhile.
+                if self.links is before and self.leaving is leaving:
+                    self.links, self.leaving = left, gone
+                    break
         self._hub.changed()
         self.on_change()
         if self._hub.membership is not None:

@@ -183,7 +183,12 @@ class Outputs:
             known = link in self.links
             if known:  # first, so that a signal handler that raises here loses no count
                 self.past.add(link.counter)
-            self.links = tuple(item for item in self.links if item is not link)
+            while True:
+                before = self.links
+                left = tuple(item for item in before if item is not link)
+                if self.links is before:  # else a signal handler has dropped others meanwhile
+                    self.links = left
+                    break
             self._elect()
         hub.changed()
         if known:
