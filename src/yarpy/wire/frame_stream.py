@@ -50,7 +50,7 @@ def frame(kind: int, masks: bool, *pieces: Buffer) -> tuple[Buffer, ...]:
 
 
 class FrameStream(ByteStream):
-    """What is in the frames that come over another stream, from where that one was read to.
+    """The content of the frames that come over another stream, from where that one was read to.
 
     `masks`: we are the client.
     """

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import sys
 from collections.abc import Iterator
+from contextlib import ExitStack
 
 import pytest
 
@@ -15,6 +16,8 @@ from support.wait import wait_until
 
 from yarpy import Property, Timeout
 from yarpy.kits.devices import ControlBoard, ControlBoardServer
+from yarpy.kits.devices.closeable import Closeable
+from yarpy.kits.devices.hardware import servo
 from yarpy.kits.devices.hardware.servo import (
     DYNAMIXEL,
     FEETECH,
@@ -36,6 +39,26 @@ def both(request: pytest.FixtureRequest) -> Iterator[tuple[Kind, ServoBus, Servo
             bus.put(servo, kind.torque.at, 1, 1)
         with ServoBoard(kind, bus.port, [5, 1], ["lift", "pan"]) as board:
             yield kind, bus, board
+
+
+class NoisyLine(Closeable):
+    """Something always comes over it, and never an answer."""
+
+    def __init__(self, path: str, speed: int) -> None:
+        self.path, self._resources = path, ExitStack()
+
+    def write(self, data: bytes) -> None:
+        pass
+
+    def read(self, until: float) -> bytes:
+        return b"\x00"
+
+
+def test_a_line_that_is_never_silent_is_given_up(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(servo, "Line", NoisyLine)
+    monkeypatch.setattr(servo, "NOISE", 0.01)
+    with pytest.raises(Timeout, match="servo 1 does not answer"):
+        ServoBoard(FEETECH, "/dev/noise", [1])
 
 
 def test_they_begin_limp(both: tuple[Kind, ServoBus, ServoBoard]) -> None:

@@ -38,8 +38,8 @@ class AnalogSensorLike(Protocol):
 
 
 class VirtualSensorLike(Protocol):
-    """What is told measurements that somebody else has estimated, such as a robot's motor boards:
-    they act on them as if they had measured them."""
+    """A device that is told measurements that somebody else has estimated, such as a robot's motor
+    boards: they act on them as if they had measured them."""
 
     def update_measures(self, values: Sequence[float]) -> None:
         """Take these for measured, a number for each channel; torques in Nm."""

@@ -1,7 +1,7 @@
 """Packets of servo buses: Dynamixel 2.0, and 1.0, which Feetech servos speak too.
 
-    FEETECH.packet(1, READ, b"\\x38\\x02")         bytes to send: two registers from 56 of servo 1
-    FEETECH.split(received)                       (Status of the first whole packet, what is behind)
+    Version1().packet(1, READ, b"\\x38\\x02")      bytes to send: two registers from 56 of servo 1
+    Version1().split(received)                    (Status of the first whole packet, what is behind)
 
 Rules: pure functions of bytes. What comes before a packet, and packets whose sum is wrong, is
 skipped: lines are noisy. Numbers in registers are little endian in both.

@@ -39,6 +39,8 @@ from yarpy.names.base import NameClient
 
 #: Seconds for an answer.
 TIMEOUT: Final = 0.05
+#: Seconds more for a line on which something always comes, but not the answer.
+NOISE: Final = 1.0
 
 
 class Register(NamedTuple):
@@ -65,7 +67,7 @@ class Register(NamedTuple):
 
 
 class Kind(NamedTuple):
-    """What the servos of a maker have: packets, registers, and units."""
+    """The servos of a maker: their packets, registers, and units."""
 
     form: Form
     baud: int
@@ -221,7 +223,7 @@ class ServoBoard(Closeable):
             until, received = time.monotonic() + TIMEOUT, b""
             while len(found) < len(self._ids):
                 more = self._line.read(until)
-                if not more:
+                if not more or time.monotonic() > until + NOISE:
                     silent = [one for one in self._ids if one not in found]
                     raise Timeout(
                         f"{self._line.path}: servo {silent[0]} does not answer: is it on?"
