@@ -57,43 +57,40 @@ _LIBRARIES = [f"yarp_{name}" for name in DEVICES if name not in _WITHIN] + [
     for name in ("dev", "sig", "math", "os", "init", "gsl", "priv_hmac", "wire_rep_utils")
 ]
 
-#: A device of our own in C++: what `inner` names, opened, and given on once it has channels.
-PATIENT = "patientAnalogSensor"
+#: A device of our own in C++: the one that `inner` names, given on once it has heard of its server.
+PATIENT = "patient"
 
 _SOURCE = """
 #include <yarp/dev/DeviceDriver.h>
 #include <yarp/dev/Drivers.h>
 #include <yarp/dev/IAnalogSensor.h>
+#include <yarp/dev/IJoypadController.h>
 #include <yarp/dev/PolyDriver.h>
 #include <yarp/os/Network.h>
 #include <yarp/os/Property.h>
 #include <yarp/os/Time.h>
 {declarations}
-class Patient : public yarp::dev::DeviceDriver, public yarp::dev::IAnalogSensor {{
+class Patient : public yarp::dev::DeviceDriver {{
     yarp::dev::PolyDriver driver;
-    yarp::dev::IAnalogSensor* sensor = nullptr;
+    bool hasHeard() {{
+        yarp::dev::IAnalogSensor* sensor = nullptr;
+        if (driver.view(sensor)) return sensor->getChannels() > 0;
+        yarp::dev::IJoypadController* pad = nullptr;
+        double axis;
+        return driver.view(pad) && pad->getAxis(0, axis);
+    }}
 public:
     bool open(yarp::os::Searchable& config) override {{
         yarp::os::Property options;
         options.fromString(config.toString());
         options.put("device", config.find("inner").asString());
-        if (!driver.open(options) || !driver.view(sensor)) return false;
-        for (int wait = 0; wait < 2000 && sensor->getChannels() == 0; wait++)
+        if (!driver.open(options)) return false;
+        for (int wait = 0; wait < 2000 && !hasHeard(); wait++)
             yarp::os::Time::delay(0.01);
-        return sensor->getChannels() > 0;
+        return hasHeard();
     }}
     bool close() override {{ return driver.close(); }}
-    int read(yarp::sig::Vector& out) override {{ return sensor->read(out); }}
-    int getState(int channel) override {{ return sensor->getState(channel); }}
-    int getChannels() override {{ return sensor->getChannels(); }}
-    int calibrateSensor() override {{ return sensor->calibrateSensor(); }}
-    int calibrateSensor(const yarp::sig::Vector& values) override {{
-        return sensor->calibrateSensor(values);
-    }}
-    int calibrateChannel(int channel) override {{ return sensor->calibrateChannel(channel); }}
-    int calibrateChannel(int channel, double value) override {{
-        return sensor->calibrateChannel(channel, value);
-    }}
+    yarp::dev::DeviceDriver* getImplementation() override {{ return driver.getImplementation(); }}
 }};
 int main(int argc, char* argv[]) {{
     yarp::os::Network network;

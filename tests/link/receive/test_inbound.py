@@ -22,7 +22,7 @@ from yarpy.carriers.own.tcp import Tcp
 from yarpy.carriers.own.text import TextAck
 from yarpy.data.bottle import Bottle
 from yarpy.data.value import Vocab
-from yarpy.errors import DecodeError
+from yarpy.errors import DecodeError, LinkClosed
 from yarpy.link.begin.greeting import driver_of
 from yarpy.link.begin.handshake import recognise
 from yarpy.link.receive import turn
@@ -232,6 +232,27 @@ def test_borrower_obeys_commands_and_answers() -> None:
         while len(got) < len(wanted):
             got += near.recv(1000)
         assert got == wanted
+
+
+def test_nobody_else_writes_while_a_question_is_open() -> None:
+    """The connection's thread does not send what the reader is about to send, nor twice."""
+    with linked() as (near, link, _):
+        link.turn.ask(threading.get_ident())
+        near.sendall(message([1]))
+        wait_until(lambda: link.turn.leased)
+        near.sendall(message([2], "d"))
+        found = read(link, None)
+        assert found is not None
+        assert near.recv(len(ACK)) == ACK
+        link.receiver.driver.stream.write(b"half of an answer")
+        link.turn.end()  # as when another sender comes
+        near.settimeout(0.3)
+        with pytest.raises(TimeoutError):
+            near.recv(1)
+        link.close()
+        assert near.recv(1) == b""
+        with pytest.raises(LinkClosed):
+            found.reply("late")
 
 
 def test_borrower_that_wants_the_newest_gets_the_last_of_those_that_are_there() -> None:

@@ -107,3 +107,18 @@ def test_open_question_keeps_the_thread_parked_and_its_end_wakes_it(parked: Thre
     parked.question = False
     parked.turn.stir()
     parked.join()
+
+
+def test_thread_waits_for_an_open_question_though_the_lease_is_over(parked: Thread) -> None:
+    """The reader may be writing the answer at this moment."""
+    parked.question = True
+    parked.turn.end()
+    wait_until(lambda: parked.looks > 2)
+    time.sleep(0.05)
+    looks = parked.looks
+    time.sleep(0.7)
+    assert parked.looks == looks
+    assert not parked.reads_on
+    parked.question = False
+    parked.turn.stir()
+    parked.join()

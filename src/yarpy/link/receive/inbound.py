@@ -107,6 +107,7 @@ class Inbound:
         self.failure = ""  # why the program could not use a message, the last time
         self.replaced = False  # by the next one of the same sender, before its own end was seen
         self._closing = False
+        self._closed = False
         self._quit = False
         self._reversed = False
         self._asker = 0  # the thread that carries out a command of the peer
@@ -155,10 +156,12 @@ class Inbound:
                     receiver.limit(idle_timeout)
                 lease = self._read_on()
                 if lease is not None:
-                    self.turn.park(lease, lambda: receiver.question is not None)
+                    self.turn.park(lease, self._is_asked)
                     if lease.forsaken:
                         self.counter.drops += receiver.held is not None
                         break
+                    if receiver.question is not None:
+                        break  # closed; whoever answers writes there, not we
         except LinkClosed as error:
             reason = "" if self._closing else str(error)  # whoever ends it himself knows
         except YarpError as error:
@@ -179,6 +182,10 @@ class Inbound:
             self._hand_over_last(word)
         receiver.finish()
         self.owner.input_ended(self, reason, self._quit)
+
+    def _is_asked(self) -> bool:
+        """Return whether a reader's question is open, and worth waiting for."""
+        return self.receiver.question is not None and not self._closed
 
     def _read_on(self) -> Lease | None:
         """Read and hand on until the link ends (None), or a reader has a lease: then each wait is
@@ -423,6 +430,7 @@ class Inbound:
         lease = self.turn.lease
         if lease is not None and lease.busy and lease.reader == threading.get_ident():
             lease.forsaken = True  # a reader beneath us goes on, and finds the end, when we return
+        self._closed = True
         self.turn.end()
         self.driver.transport.interrupt()
 

@@ -395,7 +395,8 @@ class Receiver:
     def finish(self) -> None:
         """The last acknowledgements, and the end."""
         try:
-            self.send_acks()
+            if self.question is None:  # else whoever answers may be writing
+                self.send_acks()
         except YarpError:
             pass  # the peer has gone
         self.close()

@@ -10,7 +10,8 @@ to be woken. A reader that comes back at once for the next message reads it itse
 4. The lease is over when nothing has come for SILENCE, when the reader stays away for AWAY, when
    another thread reads as well, when it is revoked (another connection came, the thread got a
    priority), and with the connection. The connection's thread waits until the reader is out.
-5. Nothing is read while a question is open that came under the lease; its end wakes the thread.
+5. Nothing is read while a question is open that came under the lease, though the lease may be over:
+   only its answer is written then. Its end wakes the thread, as does the end of the connection.
 
 There is no lock, which a reader that is interrupted by a signal might keep: the reader says `busy`
 and then looks whether the lease is `over`; the connection's thread says `over` and then looks
@@ -83,11 +84,12 @@ class Turn:
         return lease
 
     def park(self, lease: Lease, is_question_open: Callable[[], bool]) -> None:
-        """Open a lease, and wait until it is over, and its reader out; unless it is forsaken."""
+        """Open a lease, and wait until it is over, and its reader and a question of it done; unless
+        it is forsaken."""
         lease.begin()
-        while not lease.over or (lease.busy and not lease.forsaken):
+        while not lease.over or (not lease.forsaken and (lease.busy or is_question_open())):
             self._dozing = True
-            if lease.over or not is_question_open():  # last, else its end could be missed
+            if not is_question_open():  # last, else its end could be missed
                 self._dozing = False
             self._changed.wait(None if self._dozing else LEAVING if lease.over else AWAY)
             self._dozing = False
