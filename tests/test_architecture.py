@@ -26,7 +26,7 @@ TESTS = ROOT / "tests"
 # what is in a folder `verbs` belongs to the command line, wherever it lies.
 CORE_LAYERS: list[set[str]] = [
     {"errors", "log", "fork", "linger", "platform", "callback_thread", "installed"},
-    {"limit", "facts"},
+    {"limit", "facts", "bounded_file"},
     {"shipped_devices"},
     {"shipped"},
     {"registry", "route", "scope", "threads"},

@@ -13,54 +13,17 @@ Source: analogsensorclient of YARP 3.x.
 from __future__ import annotations
 
 from collections.abc import Sequence
-from contextlib import ExitStack
-from typing import Final
 
 from yarpy.data.bottle import Bottle
 from yarpy.data.sig.vector import Vector
 from yarpy.data.value import Vocab
 from yarpy.errors import LocalProtocolError
-from yarpy.kits.devices.closeable import Closeable, local_prefix, prefix
-from yarpy.kits.devices.latest_message import LatestMessage
-from yarpy.names.base import NameClient
-from yarpy.port.rpc import RpcClient
+from yarpy.kits.devices.remote_device import TIMEOUT, RemoteDevice
 from yarpy.wire.message import Message
 
-#: Seconds to wait for an answer.
-TIMEOUT: Final = 10.0
 
-
-class AnalogSensor(Closeable):
-    """The sensor whose values come from the port `remote`.
-
-    local: the client's own port of values; generated if empty.
-    timeout: values older than this many seconds are ignored.
-    names: a name client, None for the default.
-    Raises UnknownName, LinkClosed; later Timeout, LocalProtocolError.
-    """
-
-    def __init__(
-        self,
-        remote: str,
-        local: str = "",
-        *,
-        carrier: str = "tcp",
-        timeout: float = 0.5,
-        names: NameClient | None = None,
-    ) -> None:
-        self.remote = remote = prefix(remote)
-        local = local_prefix(local, remote)
-        with ExitStack() as resources:
-            self._rpc = resources.enter_context(
-                RpcClient(f"{remote}/rpc:i", name=f"{local}/rpc:o", names=names)
-            )
-            self._latest = resources.enter_context(
-                LatestMessage(remote, local, carrier, timeout, names, _channels)
-            )
-            self._resources = resources.pop_all()
-
-    def __repr__(self) -> str:
-        return f"<AnalogSensor {self.remote}>"
+class AnalogSensor(RemoteDevice[tuple[float, ...]]):
+    """The sensor whose values come from the port `remote`, to the port `local`."""
 
     def channels(self) -> list[float]:
         """A number for each channel, in the sensor's own units."""
@@ -86,7 +49,5 @@ class AnalogSensor(Closeable):
                 "do this, or not with these values"
             )
 
-
-def _channels(message: Message) -> tuple[float, ...]:
-    """Return the values in a message. Raises DecodeError."""
-    return tuple(float(each) for each in message.as_(Vector).array)
+    def _decode(self, message: Message) -> tuple[float, ...]:
+        return tuple(float(each) for each in message.as_(Vector).array)

@@ -10,62 +10,22 @@ Source: battery_nwc_yarp of YARP 3.x and 4.0.
 
 from __future__ import annotations
 
-from contextlib import ExitStack
-from typing import Final
-
 from yarpy.data.bottle import Bottle
 from yarpy.data.value import Vocab
 from yarpy.errors import DecodeError, LocalProtocolError
 from yarpy.kits.devices.battery.functions import BatteryData, IBatteryMsgs
 from yarpy.kits.devices.battery.interface import BATTERY
-from yarpy.kits.devices.closeable import Closeable, local_prefix, prefix
-from yarpy.kits.devices.latest_message import LatestMessage
+from yarpy.kits.devices.remote_device import TIMEOUT, RemoteDevice
 from yarpy.kits.devices.status import OK, reason, split
 from yarpy.kits.thrift.client import client_class
-from yarpy.names.base import NameClient
-from yarpy.port.rpc import RpcClient
 from yarpy.wire.message import Message
 
-#: Seconds to wait for an answer.
-TIMEOUT: Final = 10.0
 
+class Battery(RemoteDevice[BatteryData]):
+    """The battery whose ports begin with `remote`."""
 
-class Battery(Closeable):
-    """The battery whose ports begin with `remote`.
-
-    local: prefix of the client's own ports; generated if empty.
-    timeout: measurements older than this many seconds are ignored.
-    names: a name client, None for the default.
-    Raises UnknownName, LinkClosed; later Timeout, LocalProtocolError.
-    """
-
-    def __init__(
-        self,
-        remote: str,
-        local: str = "",
-        *,
-        carrier: str = "tcp",
-        timeout: float = 5.0,
-        names: NameClient | None = None,
-    ) -> None:
-        self.remote = remote = prefix(remote)
-        local = local_prefix(local, remote)
-        with ExitStack() as resources:
-            self._rpc = resources.enter_context(
-                RpcClient(f"{remote}/rpc:i", name=f"{local}/rpc:o", names=names)
-            )
-            # What 3.11 and 3.12 send looks alike, with other things in front.
-            version = client_class(IBatteryMsgs)(self._rpc, TIMEOUT).remote_version()
-            self._newer = version is not None and version[1:] >= (3, 12)
-            self._latest = resources.enter_context(
-                LatestMessage(
-                    f"{remote}/data:o", f"{local}/data:i", carrier, timeout, names, self._decode
-                )
-            )
-            self._resources = resources.pop_all()
-
-    def __repr__(self) -> str:
-        return f"<Battery {self.remote}>"
+    DATA = "/data:o", "/data:i"
+    FRESH = 5.0
 
     def charge(self) -> float:
         """Percent."""
@@ -104,6 +64,11 @@ class Battery(Closeable):
         if code != OK or not rest:
             raise LocalProtocolError(f'"{self.remote}" does not say what it is: {reason(code)}')
         return str(rest[0])
+
+    def _learn(self) -> None:
+        # What 3.11 and 3.12 send looks alike, with other things in front.
+        version = client_class(IBatteryMsgs)(self._rpc, TIMEOUT).remote_version()
+        self._newer = version is not None and version[1:] >= (3, 12)
 
     def _decode(self, message: Message) -> BatteryData:
         found = message.as_(Bottle)

@@ -11,29 +11,22 @@ Source: rangefinder2D_nwc_yarp of YARP 3.x and 4.0.
 
 from __future__ import annotations
 
-from contextlib import ExitStack
 from typing import TYPE_CHECKING, Any, Final
 
 from yarpy.data.bottle import Bottle
 from yarpy.data.value import Vocab
 from yarpy.data.yarp4 import to_yarp4
 from yarpy.errors import DecodeError, LocalProtocolError, RemoteProtocolError
-from yarpy.kits.devices.closeable import Closeable, local_prefix, prefix
 from yarpy.kits.devices.laser.functions import IRangefinder2DMsgs, LaserScan2D
 from yarpy.kits.devices.laser.interface import CONDITIONS, Scan
-from yarpy.kits.devices.latest_message import LatestMessage
+from yarpy.kits.devices.remote_device import TIMEOUT, RemoteDevice
 from yarpy.kits.devices.status import OK, reason, split
 from yarpy.kits.thrift.client import client_class
 from yarpy.kits.thrift.payload import Payload
-from yarpy.names.base import NameClient
-from yarpy.port.rpc import RpcClient
 from yarpy.wire.message import Message
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
-
-#: Seconds to wait for an answer.
-TIMEOUT: Final = 10.0
 
 #: Member -> the word of YARP 3.9 and earlier, and what the functions of later ones are called.
 _NAMES: Final = {
@@ -45,38 +38,11 @@ _NAMES: Final = {
 }
 
 
-class Laser(Closeable):
-    """The scanner whose scans come from the port `remote`.
+class Laser(RemoteDevice[Scan]):
+    """The scanner whose scans come from the port `remote`."""
 
-    local: prefix of the client's own ports; generated if empty.
-    timeout: scans older than this many seconds are ignored.
-    names: a name client, None for the default.
-    Raises UnknownName, LinkClosed; later Timeout, LocalProtocolError (it refuses).
-    """
-
-    def __init__(
-        self,
-        remote: str,
-        local: str = "",
-        *,
-        carrier: str = "tcp",
-        timeout: float = 1.0,
-        names: NameClient | None = None,
-    ) -> None:
-        self.remote = remote = prefix(remote)
-        local = local_prefix(local, remote)
-        with ExitStack() as resources:
-            self._rpc = resources.enter_context(
-                RpcClient(f"{remote}/rpc:i", name=f"{local}/rpc:o", names=names)
-            )
-            self._version = client_class(IRangefinder2DMsgs)(self._rpc, TIMEOUT).remote_version()
-            self._latest = resources.enter_context(
-                LatestMessage(remote, f"{local}/scans:i", carrier, timeout, names, self._decode)
-            )
-            self._resources = resources.pop_all()
-
-    def __repr__(self) -> str:
-        return f"<Laser {self.remote}>"
+    DATA = "", "/scans:i"
+    FRESH = 1.0
 
     def scan(self) -> Scan:
         """The latest scan. Raises Timeout if there is none, DecodeError."""
@@ -134,6 +100,9 @@ class Laser(Closeable):
         return str(self._get("info", 1)[0])
 
     # -- within -------------------------------------------------------------------------------
+
+    def _learn(self) -> None:
+        self._version = client_class(IRangefinder2DMsgs)(self._rpc, TIMEOUT).remote_version()
 
     def _get(self, member: str, count: int) -> list[Any]:
         item, function = _NAMES[member]

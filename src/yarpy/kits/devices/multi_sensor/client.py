@@ -11,21 +11,13 @@ Source: multipleanalogsensorsclient of YARP 3.x.
 
 from __future__ import annotations
 
-from contextlib import ExitStack
-from typing import Any, Final
+from typing import Any
 
 from yarpy.data.bottle import Bottle
 from yarpy.errors import DecodeError, RemoteProtocolError
-from yarpy.kits.devices.closeable import Closeable, local_prefix, prefix
-from yarpy.kits.devices.latest_message import LatestMessage
 from yarpy.kits.devices.multi_sensor.interface import KINDS, NEWER, OLDER
-from yarpy.names.base import NameClient
-from yarpy.port.rpc import RpcClient
+from yarpy.kits.devices.remote_device import TIMEOUT, RemoteDevice
 from yarpy.wire.message import Message
-
-#: Seconds to wait for an answer.
-TIMEOUT: Final = 10.0
-
 
 #: For each kind, the values and the time of each sensor.
 _Measures = list[list[tuple[tuple[float, ...], float]]]
@@ -42,45 +34,11 @@ def read_names(reply: Any) -> list[list[tuple[str, str]]]:
     return [[(str(name), str(frame)) for name, frame, *_ in sensors] for sensors in lists]
 
 
-class MultiSensor(Closeable):
-    """The sensors whose ports begin with `remote`.
+class MultiSensor(RemoteDevice[_Measures]):
+    """The sensors whose ports begin with `remote`."""
 
-    local: prefix of the client's own ports; generated if empty.
-    carrier: for the measurements.
-    timeout: measurements older than this many seconds are ignored.
-    names: a name client, None for the default.
-    Raises UnknownName, LinkClosed, RemoteProtocolError (no sensors there); later Timeout.
-    """
-
-    def __init__(
-        self,
-        remote: str,
-        local: str = "",
-        *,
-        carrier: str = "tcp",
-        timeout: float = 0.5,
-        names: NameClient | None = None,
-    ) -> None:
-        self.remote = remote = prefix(remote)
-        local = local_prefix(local, remote)
-        self.frames: dict[str, str] = {}
-        self._sensors: list[list[str]] = []
-        with ExitStack() as resources:
-            self._rpc = resources.enter_context(
-                RpcClient(f"{remote}/rpc:o", name=f"{local}/rpc:i", names=names)
-            )
-            self._learn_names()
-            self._latest = resources.enter_context(
-                LatestMessage(
-                    f"{remote}/measures:o",
-                    f"{local}/measures:i",
-                    carrier,
-                    timeout,
-                    names,
-                    self._decode,
-                )
-            )
-            self._resources = resources.pop_all()
+    RPC = "/rpc:o", "/rpc:i"
+    DATA = "/measures:o", "/measures:i"
 
     def __repr__(self) -> str:
         pairs = zip(KINDS, self._sensors, strict=False)
@@ -153,7 +111,9 @@ class MultiSensor(Closeable):
         row = self._latest.value()[index]
         return {name: values for name, (values, _) in zip(self._sensors[index], row, strict=True)}
 
-    def _learn_names(self) -> None:
+    def _learn(self) -> None:
+        self.frames: dict[str, str] = {}
+        self._sensors: list[list[str]] = []
         reply = self._rpc.call(Bottle(["getMetadata"]), timeout=TIMEOUT)
         try:
             for sensors in read_names(reply):

@@ -18,8 +18,8 @@ from pathlib import Path
 from types import ModuleType, SimpleNamespace
 from typing import Any, Final
 
+from yarpy.bounded_file import limited
 from yarpy.errors import DecodeError
-from yarpy.kits.record.bag.bounded import limited
 from yarpy.limit import RECORDED_CHUNK, ROS_BAG_METADATA
 
 STEPS: Final = 10_000_000  # of a database, until it is open; and

@@ -11,12 +11,13 @@ from collections.abc import Container, Iterator
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final
 
+from yarpy.bounded_file import BoundedFile, limited_like
 from yarpy.errors import DecodeError, MissingFile, UnknownPlugin
-from yarpy.kits.record.bag.bounded import BoundedFile
 from yarpy.kits.record.bag.bounded_folder import open_folder
 from yarpy.kits.record.mcap.layout import Channel, Damaged, Other, Schema
 from yarpy.kits.record.mcap.storage import FOREVER
 from yarpy.kits.record.recorded import PortFacts, Recorded
+from yarpy.limit import ROS_BAG_CHUNK
 
 if TYPE_CHECKING:
     from rosbags.interfaces import Connection
@@ -53,7 +54,10 @@ class BagStorage:
             else:
                 self._reader = Reader1(file)
                 self._reader.open()
-                file.opened(self._reader)
+                file.opened()
+                for position, chunk in self._reader.chunks.items():
+                    unpack = limited_like(chunk.decompressor, ROS_BAG_CHUNK)
+                    self._reader.chunks[position] = chunk._replace(decompressor=unpack)
         except Exception as error:  # whatever the library raises for what a stranger wrote
             where = "" if file is None else f" byte {file.place}:"
             if file is not None:

@@ -11,12 +11,11 @@ and whatever is wrong in one is a DecodeError. Reading is done by the package ro
 
 from __future__ import annotations
 
-import os
-from bz2 import BZ2Decompressor
 from collections.abc import Callable, Iterator
 from pathlib import Path
-from typing import Any, BinaryIO, Final, NamedTuple, Self, TypeVar
+from typing import Any, Final, NamedTuple, Self, TypeVar
 
+from yarpy.bounded_file import BoundedFile, limited_like
 from yarpy.errors import DecodeError, UnknownName, UnknownPlugin, YarpError
 from yarpy.limit import ROS_BAG_CHUNK
 from yarpy.log import readable
@@ -28,8 +27,6 @@ T = TypeVar("T")
 
 NEEDED: Final = "bags need the library rosbags: pip install 'yarpy[ros]'"
 _SECOND: Final = 1_000_000_000
-_LONGEST_LINE: Final = 64  # bytes of the line that a file begins with
-_OPENING: Final = 1 << 20  # bytes that may be read beyond the size of the file before messages are
 
 
 class Recorded(NamedTuple):
@@ -59,7 +56,7 @@ class BagReader:
         except ImportError as error:
             raise UnknownPlugin(NEEDED) from error
         self.path = Path(path)
-        self._file = _Bounded(self.path)
+        self._file = BoundedFile(self.path)
         self._kinds: dict[int, type[Message]] = {}
         file: Any = self._file  # it has what is asked of a path
         self._reader: Any = Reader(file)
@@ -68,13 +65,10 @@ class BagReader:
         except DecodeError:
             self._file.close()
             raise
-        self._file.left = None
-        chunks = self._reader.chunks
-        for position, chunk in chunks.items():
-            library = chunk.decompressor.__module__.partition(".")[0]
-            chunks[position] = chunk._replace(
-                decompressor=_LIMITED.get(library, chunk.decompressor)
-            )
+        self._file.opened()
+        for position, chunk in self._reader.chunks.items():
+            unpack = limited_like(chunk.decompressor, ROS_BAG_CHUNK)
+            self._reader.chunks[position] = chunk._replace(decompressor=unpack)
 
     @property
     def topics(self) -> dict[str, Topic]:
@@ -171,63 +165,3 @@ def _nanoseconds(when: Time | float | None) -> int | None:
         return None
     time = when if isinstance(when, Time) else Time.from_sec(when)
     return time.secs * _SECOND + time.nsecs
-
-
-class _Bounded:
-    """The file as rosbags wants it, but no more is read than there is: it asks for as many bytes as
-    the file says. `left`: how many may still be read; None for any number. An index that leads to
-    the same place over and over would take memory without end."""
-
-    def __init__(self, path: Path) -> None:
-        self._file: BinaryIO = path.open("rb")
-        self._size = os.fstat(self._file.fileno()).st_size
-        self.left: int | None = 2 * self._size + _OPENING
-
-    def exists(self) -> bool:
-        return True
-
-    def open(self, mode: str) -> _Bounded:
-        return self
-
-    def read(self, size: int) -> bytes:
-        data = self._file.read(min(size, self._size))
-        if self.left is not None:
-            self.left -= len(data)
-            if self.left < 0:
-                raise DecodeError("its index leads to the same place over and over")
-        return data
-
-    def readline(self) -> bytes:
-        return self._file.readline(_LONGEST_LINE)
-
-    def seek(self, offset: int, whence: int = 0) -> int:
-        return self._file.seek(offset, whence)
-
-    def tell(self) -> int:
-        return self._file.tell()
-
-    def close(self) -> None:
-        self._file.close()
-
-
-def _from_bz2(data: bytes) -> bytes:
-    return _limited(BZ2Decompressor(), data)
-
-
-def _from_lz4(data: bytes) -> bytes:
-    from lz4.frame import LZ4FrameDecompressor
-
-    return _limited(LZ4FrameDecompressor(), data)
-
-
-def _limited(decompressor: Any, data: bytes) -> bytes:
-    found: bytes = decompressor.decompress(data, ROS_BAG_CHUNK)
-    if not decompressor.eof:
-        raise DecodeError(
-            f"a compressed part is cut off, or has more than {ROS_BAG_CHUNK >> 20} MiB"
-        )
-    return found
-
-
-#: by the library that rosbags uses for it, without a limit
-_LIMITED: Final = {"bz2": _from_bz2, "lz4": _from_lz4}

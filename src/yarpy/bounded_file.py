@@ -1,22 +1,21 @@
-"""A bag of ROS 1 as a file that the library reads within bounds.
+"""A file that a library reads within bounds.
 
-Rules: the library asks for as many bytes as the file says, and unpacks whatever is packed: here no
-more is read than there is, an index that leads to the same place over and over ends, and a part
-unpacks to ROS_BAG_CHUNK bytes at most. `place` is where reading has come to, for whoever tells what
-is wrong.
+Rules: a library asks for as many bytes as a file says, and unpacks whatever is packed: here no more
+is read than there is, an index that leads to the same place over and over ends, and a part unpacks
+to so many bytes at most. `place` is where reading has come to, for whoever tells what is wrong.
 """
 
 from __future__ import annotations
 
 import os
 from bz2 import BZ2Decompressor
+from collections.abc import Callable
 from pathlib import Path
 from typing import Any, BinaryIO, Final
 
 from yarpy.errors import DecodeError
-from yarpy.limit import ROS_BAG_CHUNK
 
-_LINE: Final = 64  # bytes of the line that a bag begins with
+_LINE: Final = 64  # bytes of the line that a file begins with
 _OPENING: Final = 1 << 20  # bytes that may be read beyond the size of the file before messages are
 
 
@@ -40,14 +39,9 @@ class BoundedFile:
         """Return the file."""
         return self
 
-    def opened(self, reader: Any) -> None:
-        """The index was read: from now on as much may be read as messages need. What unpacks the
-        parts of the file is replaced."""
+    def opened(self) -> None:
+        """The index was read: from now on as much may be read as messages need."""
         self._left = None
-        for position, chunk in reader.chunks.items():
-            library = chunk.decompressor.__module__.partition(".")[0]
-            limited = _LIMITED.get(library, chunk.decompressor)
-            reader.chunks[position] = chunk._replace(decompressor=limited)
 
     def read(self, size: int) -> bytes:
         """Return the next bytes, no more than there are."""
@@ -76,17 +70,7 @@ class BoundedFile:
         self._file.close()
 
 
-def _from_bz2(data: bytes) -> bytes:
-    return limited(BZ2Decompressor(), data)
-
-
-def _from_lz4(data: bytes) -> bytes:
-    from lz4.frame import LZ4FrameDecompressor
-
-    return limited(LZ4FrameDecompressor(), data)
-
-
-def limited(decompressor: Any, data: bytes, most: int = ROS_BAG_CHUNK) -> bytes:
+def limited(decompressor: Any, data: bytes, most: int) -> bytes:
     """Return what is packed in data, `most` bytes at most. Raises DecodeError."""
     found: bytes = decompressor.decompress(data, most)
     if not decompressor.eof:
@@ -94,5 +78,15 @@ def limited(decompressor: Any, data: bytes, most: int = ROS_BAG_CHUNK) -> bytes:
     return found
 
 
-#: by the library that unpacks without a limit
-_LIMITED: Final = {"bz2": _from_bz2, "lz4": _from_lz4}
+def limited_like(unpack: Callable[..., bytes], most: int) -> Callable[..., bytes]:
+    """Return what does as `unpack`, a function of bz2 or lz4, but makes `most` bytes at most; any
+    other function itself."""
+    match unpack.__module__.partition(".")[0]:
+        case "bz2":
+            return lambda data: limited(BZ2Decompressor(), data, most)
+        case "lz4":
+            from lz4.frame import LZ4FrameDecompressor
+
+            return lambda data: limited(LZ4FrameDecompressor(), data, most)
+        case _:
+            return unpack
