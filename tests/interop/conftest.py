@@ -3,8 +3,9 @@
 `cpp` is a real C++ YARP without a name server, for the session; `cpp_server` adds a C++ name server
 of its own to each test. `network` is a place where yarpy ports of this process and C++ programs
 meet: a test that takes it runs twice, around a yarpy name server and around a C++ one; `our_names`
-and `cpp_names` are only the one or the other. `peer` is a C++ program in that place. All skip with
-the reason where C++ YARP cannot be had.
+and `cpp_names` are only the one or the other. `peer` is a C++ program in that place, `side` one
+that has run the text SIDE of its file of tests, which opens `/cpp`; `port` talks to that. All skip
+with the reason where C++ YARP cannot be had. `names`, `out` and `reader` are of this process.
 """
 
 import contextlib
@@ -78,3 +79,37 @@ def peer(network: CppYarp) -> Iterator[CppProgram]:
     """A C++ program to talk to, which has opened nothing yet."""
     with CppProgram(network) as program:
         yield program
+
+
+@pytest.fixture(scope="module")
+def side(our_names: CppYarp, request: pytest.FixtureRequest) -> Iterator[CppProgram]:
+    """A C++ program with the port `/cpp`."""
+    with CppProgram(our_names) as program:
+        program.do(request.module.SIDE)
+        yield program
+
+
+@pytest.fixture
+def port(side: CppProgram) -> Iterator[yarpy.Port]:
+    """A port of ours that sends to `/cpp` and hears it."""
+    with yarpy.Port("/ours") as ours:
+        ours.connect("/cpp")
+        ours.listen_to("/cpp")
+        yield ours
+
+
+@pytest.fixture
+def names() -> yarpy.LocalNames:
+    return yarpy.LocalNames()
+
+
+@pytest.fixture
+def out(names: yarpy.LocalNames) -> Iterator[yarpy.Port]:
+    with yarpy.Port("/arm/state", names=names) as port:
+        yield port
+
+
+@pytest.fixture
+def reader(names: yarpy.LocalNames) -> Iterator[yarpy.BufferedPort]:
+    with yarpy.BufferedPort("/in", strict=True, names=names) as port:
+        yield port

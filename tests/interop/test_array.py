@@ -1,13 +1,11 @@
 """Arrays, and dicts of them, as C++ reads them: the nearest type of YARP, else a described blob."""
 
-from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 import pytest
 from numpy.typing import NDArray
-from support.cpp import CppYarp
 from support.cpp_program import CppProgram
 
 import yarpy
@@ -28,23 +26,6 @@ def pixels(image):
 """
 
 
-@pytest.fixture(scope="module")
-def peer(our_names: CppYarp) -> Iterator[CppProgram]:
-    """A C++ program with the port `/cpp`."""
-    with CppProgram(our_names) as program:
-        program.do(SIDE)
-        yield program
-
-
-@pytest.fixture
-def port(peer: CppProgram) -> Iterator[yarpy.Port]:
-    """A port of ours that sends to `/cpp` and hears it."""
-    with yarpy.Port("/ours") as ours:
-        ours.connect("/cpp")
-        ours.listen_to("/cpp")
-        yield ours
-
-
 ARRAYS = [
     *(np.arange(5, dtype=kind) for kind in ("f8", "f4", "i8", "i4", "i2", "i1", "u1", "u2", "u8")),
     *(np.ones((3, 4), kind) for kind in ("f8", "f4", "i4", "i2", "u1", "?", "c8", "f2")),
@@ -56,50 +37,50 @@ ARRAYS = [
 @pytest.mark.peer("cpp")
 @pytest.mark.parametrize("array", ARRAYS, ids=lambda it: f"{it.dtype}{it.shape}")
 def test_every_array_through_a_cpp_bottle(
-    peer: CppProgram, port: yarpy.Port, array: NDArray[Any]
+    side: CppProgram, port: yarpy.Port, array: NDArray[Any]
 ) -> None:
     """C++ reads it as a Bottle, writes it again, and it is the array it was."""
-    peer.begin("back(read(yarp.Bottle()))")
+    side.begin("back(read(yarp.Bottle()))")
     port.write(array)
     message = port.read(timeout=5)
-    assert peer.end()
+    assert side.end()
     for found in (message.as_(np.ndarray), np.asarray(message.value)):
         assert found.dtype == array.dtype and found.shape == array.shape
         assert (found == array).all()
 
 
 @pytest.mark.peer("cpp")
-def test_nearest_types(peer: CppProgram, port: yarpy.Port) -> None:
+def test_nearest_types(side: CppProgram, port: yarpy.Port) -> None:
     for array, code in (
         (np.arange(3.0), "[v.get(i) for i in range(v.size())]"),
         (np.arange(3, dtype="i4"), "[v.get(i) for i in range(v.size())]"),
     ):
-        peer.begin(f"v = read(yarp.Vector{'Int' if array.dtype == 'i4' else ''}()); {code}")
+        side.begin(f"v = read(yarp.Vector{'Int' if array.dtype == 'i4' else ''}()); {code}")
         port.write(array)
-        assert peer.end() == [0, 1, 2]
+        assert side.end() == [0, 1, 2]
     for kind, dtype in (("ImageFloat", "f4"), ("ImageInt", "i4"), ("ImageMono", "u1")):
         for shape in ((2, 3), (3, 32), (2, 101)):
             array = np.arange(shape[0] * shape[1]).reshape(shape).astype(dtype)
-            peer.begin(
+            side.begin(
                 f"i = read(yarp.{kind}()); [i.height(), i.width(), i.getRowSize(), pixels(i)]"
             )
             port.write(array)
-            height, width, row, raw = peer.end()
+            height, width, row, raw = side.end()
             assert (height, width) == shape
             rows = np.frombuffer(bytes.fromhex(raw), "u1").reshape(height, row)
             assert rows[:, : width * array.itemsize].tobytes() == array.tobytes()
 
 
 @pytest.mark.peer("cpp")
-def test_a_blob_and_what_it_is(peer: CppProgram, port: yarpy.Port) -> None:
+def test_a_blob_and_what_it_is(side: CppProgram, port: yarpy.Port) -> None:
     array = np.arange(6, dtype="u2")
-    peer.begin(
+    side.begin(
         "b = read(yarp.Bottle()); d = b.find('yarpy.type').asList()\n"
         "[b.get(0).isBlob(), b.get(0).asBlobLength(), d.get(0).asString(), d.get(1).asString(),"
         " d.get(2).asInt32()]"
     )
     port.write(array)
-    assert peer.end() == [True, 12, "array", "<u2", 6]
+    assert side.end() == [True, 12, "array", "<u2", 6]
 
 
 @dataclass
@@ -133,8 +114,8 @@ def check(found: Observation) -> None:
 
 
 @pytest.mark.peer("cpp")
-def test_a_dataclass_is_a_property(peer: CppProgram, port: yarpy.Port) -> None:
-    peer.begin(
+def test_a_dataclass_is_a_property(side: CppProgram, port: yarpy.Port) -> None:
+    side.begin(
         "b = read(yarp.Bottle())\n"
         "rgb, joints, mask = (b.find(k) for k in ('rgb', 'joints', 'mask'))\n"
         "port.write(b)\n"
@@ -144,16 +125,16 @@ def test_a_dataclass_is_a_property(peer: CppProgram, port: yarpy.Port) -> None:
     )
     port.write(observation())
     check(port.read(timeout=5).as_(Observation))
-    assert peer.end() == ["mat", 6.0, True, "map", 'array "|b1" 2 3']
+    assert side.end() == ["mat", 6.0, True, "map", 'array "|b1" 2 3']
     # As a Property, C++ makes a text of it and reads that; what text can say comes back.
-    peer.begin("p = read(yarp.Property()); port.write(p); p.check('yarpy.type')")
+    side.begin("p = read(yarp.Property()); port.write(p); p.check('yarpy.type')")
     port.write(observation())
     check(port.read(timeout=5).as_(Observation))
-    assert peer.end()
+    assert side.end()
 
 
 @pytest.mark.peer("cpp")
-def test_a_property_of_cpp_as_a_dataclass(peer: CppProgram, port: yarpy.Port) -> None:
+def test_a_property_of_cpp_as_a_dataclass(side: CppProgram, port: yarpy.Port) -> None:
     @dataclass
     class State:
         joints: NDArray[np.float64]
@@ -161,11 +142,11 @@ def test_a_property_of_cpp_as_a_dataclass(peer: CppProgram, port: yarpy.Port) ->
         name: str = ""
         more: int = 3
 
-    peer.begin(
+    side.begin(
         "p = yarp.Property(); p.fromString('(joints (0.5 1.5)) (speed 2) (name arm) (other x)')\n"
         "port.write(p)"
     )
     found = port.read(timeout=5).as_(State)
-    assert peer.end()
+    assert side.end()
     assert found.joints.tolist() == [0.5, 1.5] and found.joints.dtype == "f8"
     assert (found.speed, found.name, found.more) == (2.0, "arm", 3) and type(found.speed) is float

@@ -42,11 +42,6 @@ def head(message: yarpy.Message) -> object:
 
 
 @pytest.fixture
-def names() -> LocalNames:
-    return LocalNames()
-
-
-@pytest.fixture
 def port(names: LocalNames) -> Iterator[yarpy.RpcServer]:
     with yarpy.RpcServer("/head/rpc:i", head, names=names) as server:
         yield server

@@ -35,11 +35,6 @@ def camera(
 
 
 @pytest.fixture
-def names() -> yarpy.LocalNames:
-    return yarpy.LocalNames()
-
-
-@pytest.fixture
 def view(names: yarpy.LocalNames) -> Iterator[yarpy.BufferedPort]:
     with yarpy.BufferedPort("/view", names=names) as port:
         yield port

@@ -119,11 +119,6 @@ def site() -> Iterator[int]:
         thread.join(HANG)
 
 
-@pytest.fixture
-def names() -> LocalNames:
-    return LocalNames()
-
-
 @contextmanager
 def writing(port: yarpy.Port) -> Iterator[None]:
     """A port that writes again and again meanwhile."""

@@ -3,12 +3,10 @@
 The C++ side fills and shows the whole memory of an image, padding included.
 """
 
-from collections.abc import Iterator
 from typing import Any
 
 import numpy as np
 import pytest
-from support.cpp import CppYarp
 from support.cpp_program import CppProgram
 
 import yarpy
@@ -50,23 +48,6 @@ def read(kind):
 """
 
 
-@pytest.fixture(scope="module")
-def peer(our_names: CppYarp) -> Iterator[CppProgram]:
-    """A C++ program with the port `/cpp` and functions to make and show images."""
-    with CppProgram(our_names) as program:
-        program.do(SIDE)
-        yield program
-
-
-@pytest.fixture
-def port(peer: CppProgram) -> Iterator[yarpy.Port]:
-    """A port of ours that sends to `/cpp` and hears it."""
-    with yarpy.Port("/ours") as ours:
-        ours.connect("/cpp")
-        ours.listen_to("/cpp")
-        yield ours
-
-
 def sample(code: str, width: int, height: int) -> Any:
     """An array of odd numbers for an image of that pixel code."""
     kind = pixel_of(code)
@@ -88,16 +69,16 @@ def pixels(array: Any) -> Any:
 
 
 @pytest.mark.parametrize(("kind", "code"), CLASSES.items())
-def test_cpp_sends(peer: CppProgram, port: yarpy.Port, kind: str, code: str) -> None:
+def test_cpp_sends(side: CppProgram, port: yarpy.Port, kind: str, code: str) -> None:
     for width, height in SHAPES:
         for quantum in (8, 1, 4):
-            peer.begin(
+            side.begin(
                 f"image = make('{kind}', {width}, {height}, {quantum})\n"
                 "assert port.write(image)\n"
                 "[image.getRowSize(), memory(image)]"
             )
             image = port.read(timeout=5).value
-            row_bytes, memory = peer.end()
+            row_bytes, memory = side.end()
             assert isinstance(image, Image)
             found = (image.code, image.width, image.height, image.quantum)
             assert found == (code, width, height, quantum)
@@ -106,65 +87,65 @@ def test_cpp_sends(peer: CppProgram, port: yarpy.Port, kind: str, code: str) -> 
 
 
 @pytest.mark.parametrize(("kind", "code"), CLASSES.items())
-def test_yarpy_sends(peer: CppProgram, port: yarpy.Port, kind: str, code: str) -> None:
+def test_yarpy_sends(side: CppProgram, port: yarpy.Port, kind: str, code: str) -> None:
     for width, height in SHAPES:
         for quantum in (8, 1, 4):
             array = sample(code, width, height)
             image = Image(array, code, quantum)
             for receiver in (kind, "FlexImage"):
-                peer.begin(f"read('{receiver}')")
+                side.begin(f"read('{receiver}')")
                 port.write(image)
-                answer = peer.end()
+                answer = side.end()
                 assert answer[:3] == [width, height, image.code.code]
                 seen = rows(answer[5], answer[3], pixels(array).shape[1])
                 assert (seen == pixels(array)).all(), (receiver, width, quantum)
 
 
-def test_pixels_are_where_they_belong(peer: CppProgram, port: yarpy.Port) -> None:
+def test_pixels_are_where_they_belong(side: CppProgram, port: yarpy.Port) -> None:
     """Red is red, x is x: through the pixel access of C++, not through memory."""
     array = np.zeros((4, 5, 3), "u1")
     array[1, 3] = (10, 20, 30)
-    peer.begin("image = yarp.ImageRgb(); port.read(image)\np = image.pixel(3, 1)\n[p.r, p.g, p.b]")
+    side.begin("image = yarp.ImageRgb(); port.read(image)\np = image.pixel(3, 1)\n[p.r, p.g, p.b]")
     port.write(array)
-    assert peer.end() == [10, 20, 30]
-    peer.begin(
+    assert side.end() == [10, 20, 30]
+    side.begin(
         "image = yarp.ImageRgb(); image.resize(5, 4); image.zero()\n"
         "p = image.pixel(4, 2); p.r, p.g, p.b = 40, 50, 60\n"
         "port.write(image)"
     )
     seen = port.read(timeout=5).as_(np.ndarray)
-    assert peer.end()
+    assert side.end()
     assert seen.shape == (4, 5, 3)
     assert seen[2, 4].tolist() == [40, 50, 60]
     assert seen.sum() == 150
 
 
-def test_bottom_up(peer: CppProgram, port: yarpy.Port) -> None:
+def test_bottom_up(side: CppProgram, port: yarpy.Port) -> None:
     """The first row in memory is the bottom one: an array still begins at the top."""
-    peer.begin("image = make('ImageMono', 6, 4, 8, False)\nport.write(image)\nmemory(image)")
+    side.begin("image = make('ImageMono', 6, 4, 8, False)\nport.write(image)\nmemory(image)")
     image = port.read(timeout=5).value
-    stored = rows(peer.end(), 8, 6)
+    stored = rows(side.end(), 8, 6)
     assert not image.top_down
     assert (image.array == stored[::-1]).all()
     array = sample("mono", 6, 4)
-    peer.begin("read('ImageMono')")
+    side.begin("read('ImageMono')")
     port.write(Image(array, top_down=False))
-    answer = peer.end()
+    answer = side.end()
     assert answer[4] is False
     assert (rows(answer[5], answer[3], 6) == array[::-1]).all()
 
 
-def test_an_empty_image(peer: CppProgram, port: yarpy.Port) -> None:
-    peer.begin("port.write(yarp.ImageRgb())")
+def test_an_empty_image(side: CppProgram, port: yarpy.Port) -> None:
+    side.begin("port.write(yarp.ImageRgb())")
     image = port.read(timeout=5).value
-    assert peer.end()
+    assert side.end()
     assert (image.width, image.height, image.array.shape) == (0, 0, (0, 0, 3))
-    peer.begin("read('FlexImage')[:2]")
+    side.begin("read('FlexImage')[:2]")
     port.write(image)
-    assert peer.end() == [0, 0]
+    assert side.end() == [0, 0]
 
 
-def test_conversions_are_those_of_cpp(peer: CppProgram, port: yarpy.Port) -> None:
+def test_conversions_are_those_of_cpp(side: CppProgram, port: yarpy.Port) -> None:
     """An image of one type read as another: C++ converts it as it comes, `converted` on demand."""
     names = {code: kind for kind, code in CLASSES.items()}
     pairs = [
@@ -176,21 +157,21 @@ def test_conversions_are_those_of_cpp(peer: CppProgram, port: yarpy.Port) -> Non
         if source == "dec":
             array = np.abs(array)
         image = Image(array, source)
-        peer.begin(f"read('{names[target]}')")
+        side.begin(f"read('{names[target]}')")
         port.write(image)
-        answer = peer.end()
+        answer = side.end()
         expected = pixels(image.converted(target).array)
         assert (rows(answer[5], answer[3], expected.shape[1]) == expected).all(), (source, target)
 
 
-def test_over_every_binary_carrier(peer: CppProgram) -> None:
+def test_over_every_binary_carrier(side: CppProgram) -> None:
     array = sample("rgb", 64, 48)
     for carrier in ("tcp", "fast_tcp", "udp", "mcast"):
         with yarpy.Port("/ours") as port:
             port.connect("/cpp", carrier)
             port.listen_to("/cpp", carrier)
             assert port.wait_for_inputs(timeout=5)
-            peer.begin("image = yarp.ImageRgb(); port.read(image); port.write(image)")
+            side.begin("image = yarp.ImageRgb(); port.read(image); port.write(image)")
             port.write(array)
             assert (port.read(timeout=5).as_(np.ndarray) == array).all(), carrier
-            assert peer.end()
+            assert side.end()

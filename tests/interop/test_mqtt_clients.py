@@ -29,23 +29,6 @@ def broker(tmp_path: Path) -> Iterator[Broker]:
     found.stop()
 
 
-@pytest.fixture
-def names() -> yarpy.LocalNames:
-    return yarpy.LocalNames()
-
-
-@pytest.fixture
-def out(names: yarpy.LocalNames) -> Iterator[yarpy.Port]:
-    with yarpy.Port("/arm/state", names=names) as port:
-        yield port
-
-
-@pytest.fixture
-def reader(names: yarpy.LocalNames) -> Iterator[yarpy.BufferedPort]:
-    with yarpy.BufferedPort("/in", strict=True, names=names) as port:
-        yield port
-
-
 def run(program: str, port: int, *words: str) -> subprocess.CompletedProcess[str]:
     """A client of mosquitto, to its end."""
     command = [program, "-h", "127.0.0.1", "-p", str(port), *words]

@@ -18,23 +18,6 @@ import yarpy
 from yarpy.peers.mqtt import broker as mqtt_broker
 
 
-@pytest.fixture
-def names() -> yarpy.LocalNames:
-    return yarpy.LocalNames()
-
-
-@pytest.fixture
-def out(names: yarpy.LocalNames) -> Iterator[yarpy.Port]:
-    with yarpy.Port("/arm/state", names=names) as port:
-        yield port
-
-
-@pytest.fixture
-def reader(names: yarpy.LocalNames) -> Iterator[yarpy.BufferedPort]:
-    with yarpy.BufferedPort("/in", strict=True, names=names) as port:
-        yield port
-
-
 class WebSocketBroker(Broker):
     """A broker with a second listener, for WebSockets, which its topics name."""
 

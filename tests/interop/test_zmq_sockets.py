@@ -85,19 +85,8 @@ def sockets() -> Iterator[Sockets]:
 
 
 @pytest.fixture
-def names() -> yarpy.LocalNames:
-    return yarpy.LocalNames()
-
-
-@pytest.fixture
 def out(names: yarpy.LocalNames) -> Iterator[yarpy.Port]:
     with yarpy.Port("/out", names=names) as port:
-        yield port
-
-
-@pytest.fixture
-def reader(names: yarpy.LocalNames) -> Iterator[yarpy.BufferedPort]:
-    with yarpy.BufferedPort("/in", strict=True, names=names) as port:
         yield port
 
 

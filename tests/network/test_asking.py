@@ -24,11 +24,6 @@ from yarpy.network.asking import called
 from yarpy.port.port import Port
 
 
-@pytest.fixture
-def names() -> LocalNames:
-    return LocalNames()
-
-
 def test_where_a_port_is(names: LocalNames) -> None:
     with Port("/in", names=names) as port:
         assert network.query("/in", names) == port.contact

@@ -23,12 +23,6 @@ from yarpy.errors import (
 from yarpy.nameserver.local import LocalNames
 from yarpy.port.port import Port
 
-
-@pytest.fixture
-def names() -> LocalNames:
-    return LocalNames()
-
-
 # ---------------------------------------------------------------------------------- asking
 
 

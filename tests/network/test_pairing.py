@@ -16,11 +16,6 @@ from yarpy.nameserver.local import LocalNames
 from yarpy.port.port import Port
 
 
-@pytest.fixture
-def names() -> LocalNames:
-    return LocalNames()
-
-
 def test_local_is_not_asked_of_two_programs(names: LocalNames) -> None:
     """A port of C++ YARP that is dialled so from another program crashes."""
     with Port("/out", names=names) as out, Port("/in", callback=lambda message: None, names=names):

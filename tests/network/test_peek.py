@@ -13,11 +13,6 @@ from yarpy.network.peek import Peek
 
 
 @pytest.fixture
-def names() -> yarpy.LocalNames:
-    return yarpy.LocalNames()
-
-
-@pytest.fixture
 def out(names: yarpy.LocalNames) -> Iterator[yarpy.Port]:
     with yarpy.Port("/out", names=names) as port:
         yield port

@@ -23,11 +23,6 @@ load = pytest.importorskip("yarpy.kits.thrift.library").load
 
 
 @pytest.fixture
-def names() -> yarpy.LocalNames:
-    return yarpy.LocalNames()
-
-
-@pytest.fixture
 def server(names: yarpy.LocalNames) -> Iterator[yarpy.RpcServer]:
     def answer(message: yarpy.Message) -> Bottle:
         return Bottle([Vocab("ok"), "echo", message.value])

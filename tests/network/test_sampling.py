@@ -19,11 +19,6 @@ from yarpy.network.sampling import Sampler, ends, flow, flows, state_of
 from yarpy.network.traffic import Flow
 
 
-@pytest.fixture
-def names() -> yarpy.LocalNames:
-    return yarpy.LocalNames()
-
-
 def test_every_connection_once_as_both_ends_see_it(names: yarpy.LocalNames) -> None:
     with (
         yarpy.Port("/a", names=names) as a,

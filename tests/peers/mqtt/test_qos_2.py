@@ -22,11 +22,6 @@ VERSIONS = [paho.MQTTv311, paho.MQTTv5]
 
 
 @pytest.fixture
-def names() -> yarpy.LocalNames:
-    return yarpy.LocalNames()
-
-
-@pytest.fixture
 def broker(tmp_path: Path):  # type: ignore[no-untyped-def]
     found = Broker(tmp_path)
     yield found

@@ -98,11 +98,6 @@ class FakeBroker:
 
 
 @pytest.fixture
-def names() -> yarpy.LocalNames:
-    return yarpy.LocalNames()
-
-
-@pytest.fixture
 def fake() -> Iterator[FakeBroker]:
     found = FakeBroker()
     yield found

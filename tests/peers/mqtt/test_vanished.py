@@ -16,11 +16,6 @@ from yarpy.peers.mqtt import packet as mqtt
 CLEAN, WILL = 2, 4
 
 
-@pytest.fixture
-def names() -> yarpy.LocalNames:
-    return yarpy.LocalNames()
-
-
 @contextmanager
 def client(
     port: yarpy.Port, keep_alive: int, version: int = 4, will: bytes = b""

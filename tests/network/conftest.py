@@ -1,0 +1,10 @@
+"""Names within this process."""
+
+import pytest
+
+from yarpy import LocalNames
+
+
+@pytest.fixture
+def names() -> LocalNames:
+    return LocalNames()
