@@ -40,6 +40,10 @@ _EXTRAS: Final = {
     "dynamixelServos": "hardware",
     "feetechServos": "hardware",
     "opencv_grabber": "vision",
+    "portaudioPlayer": "audio",
+    "portaudioRecorder": "audio",
+    "witmotionImu": "hardware",
+    "xsensImu": "hardware",
 }
 
 #: Type -> where it is in the kit of devices.
@@ -66,10 +70,14 @@ _DEVICES: Final[dict[str, str]] = {
     "multipleanalogsensorsremapper": "multi_sensor.remapper:Remapper",
     "multipleanalogsensorsserver": "wrapper:MultiSensor",
     "opencv_grabber": "hardware.opencv:camera",
+    "portaudioPlayer": "hardware.portaudio:player",
+    "portaudioRecorder": "hardware.portaudio:recorder",
     "rangefinder2D_nws_yarp": "wrapper:Laser",
     "remotecontrolboardremapper": "control_board.remapper:remote_remapper",
     "test_grabber": "simulated.plugin:camera",
     "virtualAnalogServer": "analog.plugin:VirtualAnalog",
+    "witmotionImu": "hardware.imu:witmotion_imu",
+    "xsensImu": "hardware.imu:xsens_imu",
     **dict.fromkeys(_SIMULATED, "simulated.plugin:simulated"),
     **dict.fromkeys(_SERVERS, "wrapper:Served"),
     **dict.fromkeys(_CLIENTS, "remote:remote"),

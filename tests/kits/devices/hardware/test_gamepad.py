@@ -79,5 +79,17 @@ def test_on_ports(pipe: tuple[str, int], names: LocalNames) -> None:
 
 
 def test_nothing_there(tmp_path: Path) -> None:
-    with pytest.raises(OSError, match="none"):
-        Gamepad(str(tmp_path / "none"))
+    with pytest.raises(FileNotFoundError, match=r"no gamepad at .*/js0: plug one in"):
+        Gamepad(str(tmp_path / "js0"))
+    (tmp_path / "js3").touch()
+    with pytest.raises(FileNotFoundError, match=r"--port takes one of .*/js3$"):
+        Gamepad(str(tmp_path / "js0"))
+
+
+def test_somebody_elses(pipe: tuple[str, int], monkeypatch: pytest.MonkeyPatch) -> None:
+    def refused(path: str, flags: int) -> int:  # root may read everything
+        raise PermissionError(13, "Permission denied", path)
+
+    monkeypatch.setattr("yarpy.kits.devices.hardware.gamepad.os.open", refused)
+    with pytest.raises(PermissionError, match="sudo usermod -aG input"):
+        Gamepad(pipe[0])

@@ -17,6 +17,7 @@ import selectors
 import sys
 import threading
 from contextlib import ExitStack
+from pathlib import Path
 from struct import Struct
 from typing import Final
 
@@ -51,10 +52,8 @@ class Gamepad(SimulatedJoypad, Closeable):
         self._rest = b""
         self._file: int
         self._wake: int
-        if sys.platform == "win32":
-            raise UnknownPlugin("gamepads are files of Linux; Windows has none")
         with ExitStack() as resources:
-            self._file = os.open(path, os.O_RDONLY | os.O_NONBLOCK)
+            self._file = _opened(path)
             resources.callback(os.close, self._file)
             self._wake, end = os.pipe()
             resources.callback(os.close, self._wake)
@@ -102,6 +101,24 @@ class Gamepad(SimulatedJoypad, Closeable):
 def gamepad(options: Property, *, names: NameClient | None = None) -> object:
     """A gamepad or joystick of Linux. Raises OSError."""
     return Gamepad(str(options.find("port", "") or "/dev/input/js0"))
+
+
+def _opened(path: str) -> int:
+    if sys.platform == "win32":
+        raise UnknownPlugin("gamepads are files of Linux; Windows has none")
+    try:
+        return os.open(path, os.O_RDONLY | os.O_NONBLOCK)
+    except FileNotFoundError as error:
+        there = " ".join(sorted(map(str, Path(path).parent.glob("js*"))))
+        raise FileNotFoundError(
+            f"there is no gamepad at {path}: "
+            + (f"--port takes one of {there}" if there else "plug one in, or pair it")
+        ) from error
+    except PermissionError as error:
+        raise PermissionError(
+            f"the gamepad at {path} is not for this user: sudo usermod -aG input $USER, and log in "
+            "anew"
+        ) from error
 
 
 def _put(values: list[float], number: int, value: float) -> None:

@@ -46,7 +46,7 @@ def command(
 
     Without PORT it waits for whoever connects.
     """
-    from yarpy.kits.views.audio import Speaker
+    from yarpy.kits.devices.hardware.audio import Speaker
     from yarpy.kits.views.wav import WavWriter
 
     silence = None if duration is None else duration + LATENESS

@@ -50,7 +50,7 @@ def command(
 
     Without PORTS it waits until somebody connects.
     """
-    from yarpy.kits.views.audio import record
+    from yarpy.kits.devices.hardware.audio import record
     from yarpy.kits.views.wav import read_wav
 
     sounds = (

@@ -12,12 +12,12 @@ import pytest
 from support.alsa import played, silent_card, sound_card
 
 import yarpy
-from yarpy.kits.views import audio
+from yarpy.kits.devices.hardware import audio
 
 HEAD = """
 import numpy as np
 import yarpy
-from yarpy.kits.views.audio import Speaker, record
+from yarpy.kits.devices.hardware.audio import Speaker, record
 """
 
 

@@ -6,11 +6,10 @@ install, or what to do instead.
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Generator
 from typing import Any
 
 import yarpy
-from yarpy.kits.views.wav import deinterleaved, interleaved
 
 
 class Speaker:
@@ -29,7 +28,10 @@ class Speaker:
             self.close()
             self._form = form
             self._stream = _open(self._library.RawOutputStream, *form, self._instead)
-        self._stream.write(interleaved(sound))
+        try:
+            self._stream.write(sound.array.T.tobytes())
+        except self._library.PortAudioError as error:
+            raise OSError(f"the loudspeaker plays no more: {error}") from error
 
     def close(self) -> None:
         """Play accepted sounds to their end."""
@@ -41,13 +43,18 @@ class Speaker:
 
 def record(
     frequency: int, channels: int, seconds: float = 0.1, instead: str = ""
-) -> Iterator[yarpy.Sound]:
+) -> Generator[yarpy.Sound]:
     """Sound from the microphone, endlessly, in pieces of `seconds`."""
-    stream = _open(_library(instead).RawInputStream, frequency, channels, instead)
+    import numpy as np
+
+    library = _library(instead)
+    stream = _open(library.RawInputStream, frequency, channels, instead)
     try:
         while True:
             data, _ = stream.read(max(1, round(frequency * seconds)))
-            yield deinterleaved(bytes(data), channels, frequency)
+            yield yarpy.Sound(np.frombuffer(data, "<i2").reshape(-1, channels).T.copy(), frequency)
+    except library.PortAudioError as error:
+        raise OSError(f"the microphone hears no more: {error}") from error
     finally:
         stream.stop()
         stream.close()
