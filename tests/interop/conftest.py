@@ -24,7 +24,7 @@ import yarpy
 @pytest.fixture(scope="session")
 @brings("cpp")
 def cpp(tmp_path_factory: pytest.TempPathFactory) -> CppYarp:
-    """C++ YARP 3.5: `cpp.server()`, `cpp.at(host, port)`, then run, popen, python on the result."""
+    """C++ YARP: `cpp.server()`, `cpp.at(host, port)`, then run, popen, python on the result."""
     return CppYarp.prepare(tmp_path_factory.mktemp("cpp"))
 
 

@@ -6,9 +6,8 @@ from support.cpp_program import CppProgram
 
 
 def test_programs_and_binding_are_the_known_version(cpp: CppYarp) -> None:
-    assert cpp.run("version").stdout.startswith("YARP version 3.5.")
-    script = "import sys, yarp; print(sys.version_info[:2], yarp.Bottle('1 (a b) 2.5').size())"
-    assert cpp.python(script).stdout == "(3, 10) 3\n"
+    assert cpp.version in ((3, 5), (3, 9))
+    assert cpp.python("import yarp; print(yarp.Bottle('1 (a b) 2.5').size())").stdout == "3\n"
 
 
 def test_nothing_is_configured_without_a_server(cpp: CppYarp) -> None:

@@ -14,6 +14,7 @@ their Python wrappers (a signal then reaches the program itself).
 """
 
 import contextlib
+import functools
 import os
 import signal
 import socket
@@ -41,7 +42,7 @@ class CppYarp:
     """C++ YARP with one configuration: which name server it uses, in which directory it runs."""
 
     root: Path
-    """The virtual environment that holds the programs."""
+    """The prefix or virtual environment that holds the programs."""
     home: Path
     """Working directory of what is started, with `config/` and `data/` (YARP_CONFIG_HOME ...)."""
     host: str = ""
@@ -59,12 +60,23 @@ class CppYarp:
 
     @property
     def interpreter(self) -> Path:
-        """CPython 3.10 in whose environment `import yarp` is the C++ binding."""
+        """CPython in whose environment `import yarp` is the C++ binding."""
         return self.root / "bin/python"
+
+    @property
+    def package(self) -> Path | None:
+        """Where the package has everything, linked statically; None in an installation."""
+        package = self.root / "lib/python3.10/site-packages/yarp"
+        return package if (package / "bin").is_dir() else None
+
+    @property
+    def version(self) -> tuple[int, int]:
+        """Its version, as (3, 9)."""
+        return _version(self.program())
 
     def program(self, name: str = "yarp") -> Path:
         """A compiled program: yarp, yarpserver, yarprun, yarpdev, yarpros, yarpidl_thrift ..."""
-        return self.root / "lib/python3.10/site-packages/yarp/bin" / name
+        return (self.package or self.root) / "bin" / name
 
     @property
     def environment(self) -> dict[str, str]:
@@ -81,6 +93,8 @@ class CppYarp:
         # with a number of its own no test finds the server of another.
         if self.port:
             ours["YARP_PORT_RANGE"] = str(self.port)
+        if self.package is None:
+            ours["YARP_DATA_DIRS"] = str(self.root / "share/yarp")
         ours["PYTHONUNBUFFERED"] = "1"
         return {**ours, **self.variables}
 
@@ -148,6 +162,13 @@ class CppYarp:
     def _start(self, args: list[str | os.PathLike[str]]) -> Process:
         self.home.mkdir(parents=True, exist_ok=True)
         return Process(args, env=self.environment, cwd=self.home)
+
+
+@functools.cache
+def _version(program: Path) -> tuple[int, int]:
+    said = subprocess.run([program, "version"], capture_output=True, text=True, timeout=HANG).stdout
+    major, minor = said.removeprefix("YARP version ").split(".")[:2]
+    return int(major), int(minor)
 
 
 def _finish(process: Process, input: str, timeout: float) -> "subprocess.CompletedProcess[str]":

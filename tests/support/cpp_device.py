@@ -50,12 +50,18 @@ DEVICES = (
     "audioFromFileDevice",
     "audioToFileDevice",
 )
-#: in the library of another
-_WITHIN = {"remotecontrolboardremapper": "controlboardremapper"}
-_LIBRARIES = [f"yarp_{name}" for name in DEVICES if name not in _WITHIN] + [
-    f"YARP_{name}"
-    for name in ("dev", "sig", "math", "os", "init", "gsl", "priv_hmac", "wire_rep_utils")
-]
+#: What 3.9 calls some of them.
+_NEWER = {
+    "batteryClient": "battery_nwc_yarp",
+    "batteryWrapper": "battery_nws_yarp",
+    "Rangefinder2DClient": "rangefinder2D_nwc_yarp",
+    "AudioRecorderWrapper": "audioRecorder_nws_yarp",
+}
+#: Servers that 3.9 opens without what they serve; a robot interface attaches it.
+_ATTACHED = (
+    *("battery_nws_yarp", "localization2D_nws_yarp", "map2D_nws_yarp", "odometry2D_nws_yarp"),
+    *("serialPort_nws_yarp", "speechSynthesizer_nws_yarp", "speechTranscription_nws_yarp"),
+)
 
 #: A device of our own in C++: the one that `inner` names, given on once it has heard of its server.
 PATIENT = "patient"
@@ -65,22 +71,23 @@ _SOURCE = """
 #include <yarp/dev/Drivers.h>
 #include <yarp/dev/IAnalogSensor.h>
 #include <yarp/dev/IJoypadController.h>
+#include <yarp/dev/IMultipleWrapper.h>
 #include <yarp/dev/PolyDriver.h>
+#include <yarp/dev/PolyDriverList.h>
 #include <yarp/os/Network.h>
 #include <yarp/os/Property.h>
 #include <yarp/os/Time.h>
-{declarations}
-class Patient : public yarp::dev::DeviceDriver {{
+class Patient : public yarp::dev::DeviceDriver {
     yarp::dev::PolyDriver driver;
-    bool hasHeard() {{
+    bool hasHeard() {
         yarp::dev::IAnalogSensor* sensor = nullptr;
         if (driver.view(sensor)) return sensor->getChannels() > 0;
         yarp::dev::IJoypadController* pad = nullptr;
         double axis;
         return driver.view(pad) && pad->getAxis(0, axis);
-    }}
+    }
 public:
-    bool open(yarp::os::Searchable& config) override {{
+    bool open(yarp::os::Searchable& config) override {
         yarp::os::Property options;
         options.fromString(config.toString());
         options.put("device", config.find("inner").asString());
@@ -88,32 +95,59 @@ public:
         for (int wait = 0; wait < 2000 && !hasHeard(); wait++)
             yarp::os::Time::delay(0.01);
         return hasHeard();
-    }}
-    bool close() override {{ return driver.close(); }}
-    yarp::dev::DeviceDriver* getImplementation() override {{ return driver.getImplementation(); }}
-}};
-int main(int argc, char* argv[]) {{
+    }
+    bool close() override { return driver.close(); }
+    yarp::dev::DeviceDriver* getImplementation() override { return driver.getImplementation(); }
+};
+class Attached : public yarp::dev::DeviceDriver {
+    yarp::dev::PolyDriver inner, outer;
+public:
+    bool open(yarp::os::Searchable& config) override {
+        yarp::os::Property options;
+        options.fromString(config.toString());
+        options.put("device", config.find("subdevice").asString());
+        if (!inner.open(options)) return false;
+        options.put("device", config.find("outer").asString());
+        options.unput("subdevice");
+        yarp::dev::IMultipleWrapper* wrapper = nullptr;
+        yarp::dev::PolyDriverList list;
+        list.push(&inner, "inner");
+        return outer.open(options) && outer.view(wrapper) && wrapper->attachAll(list);
+    }
+    bool close() override { return outer.close() && inner.close(); }
+};
+int main(int argc, char* argv[]) {
     yarp::os::Network network;
-    {additions}
+    add_plugins();
     yarp::dev::Drivers::factory().add(
-        new yarp::dev::DriverCreatorOf<Patient>("{patient}", "", "Patient"));
+        new yarp::dev::DriverCreatorOf<Patient>("patient", "", "Patient"));
+    yarp::dev::Drivers::factory().add(
+        new yarp::dev::DriverCreatorOf<Attached>("attached", "", "Attached"));
     return yarp::dev::Drivers::factory().yarpdev(argc, argv);
-}}
-""".format(
-    patient=PATIENT,
-    declarations="\n".join(f"void add_owned_{name}(const char* owner);" for name in DEVICES),
-    additions="\n    ".join(f'add_owned_{name}("host");' for name in DEVICES),
-)
+}
+"""
 
 
 def device_host(cpp: CppYarp) -> Path:
     """A yarpdev with `DEVICES`; links it the first time. Or MissingPeer."""
-    return linked(cpp, "devices", _SOURCE, _LIBRARIES)
+    return linked(
+        cpp,
+        "devices",
+        _SOURCE,
+        DEVICES,
+        ["YARP_dev", "YARP_sig", "YARP_math", "YARP_os", "YARP_init"],
+    )
 
 
 @contextlib.contextmanager
 def cpp_device(programs: CppYarp, device: str, **options: object) -> Iterator[Process]:
     """A C++ process with this device, opened with `--option value` for each of the options."""
+    if programs.version >= (3, 9):
+        device = _NEWER.get(device, device)
+        inner = str(options.get("subdevice", ""))
+        options = {**options, "subdevice": _NEWER.get(inner, inner)} if inner else options
+        if device in _ATTACHED:
+            device, options = "attached", {**options, "outer": device}
     words = [word for name, value in options.items() for word in (f"--{name}", str(value))]
     command = [device_host(programs), "--device", device, *words]
     with Process(command, env=programs.environment, cwd=programs.home) as process:

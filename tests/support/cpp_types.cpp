@@ -17,9 +17,6 @@
 #include <string>
 #include <unistd.h>
 
-void add_owned_shmem(const char* owner);
-void add_owned_tcpros(const char* owner);
-void add_owned_unix_stream(const char* owner);
 
 using namespace yarp::os;
 using namespace yarp::sig;
@@ -166,9 +163,7 @@ int main()
     FILE* answers = fdopen(dup(1), "w");
     dup2(2, 1);
     Network network(YARP_CLOCK_SYSTEM);
-    add_owned_shmem("types");
-    add_owned_tcpros("types");
-    add_owned_unix_stream("types");
+    add_plugins();
     Port port;
     std::string text;
     while (std::getline(std::cin, text)) {

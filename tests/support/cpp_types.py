@@ -14,14 +14,13 @@ from support.process import Process
 from support.wait import HANG
 
 _SOURCE = Path(__file__).with_suffix(".cpp")
-_CARRIERS = ("yarp_shmem", "yarp_tcpros", "yarp_unix")
-_LIBRARIES = tuple(f"YARP_{name}" for name in ("sig", "os", "init", "priv_hmac", "wire_rep_utils"))
+_CARRIERS = ("shmem", "tcpros", "unix_stream")
 
 
 def types_program(cpp: CppYarp) -> str:
     """The program, for `popen(program=)`. Or MissingPeer."""
     source = _SOURCE.read_text("utf-8")
-    return str(linked(cpp, "types", source, [*_CARRIERS, *_LIBRARIES]))
+    return str(linked(cpp, "types", source, _CARRIERS, ["YARP_sig", "YARP_os", "YARP_init"]))
 
 
 class CppTypes:

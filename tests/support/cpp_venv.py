@@ -1,7 +1,11 @@
-"""The virtual environment that holds a real C++ YARP. See `peer_venv.py` for where it lies.
+"""The directory that holds a real C++ YARP: one that is named, else a virtual environment.
 
-The package `yarp-middleware` carries compiled C++ YARP 3.5 (programs and Python binding) and needs
-CPython 3.10.
+    YARPY_CPP_YARP=/opt/yarp make peers      # the same tests beside another version
+
+The variable names the prefix of an installation with shared libraries, programs, devices and
+carriers, which is also a virtual environment whose `bin/python` imports the binding. Without it,
+the package `yarp-middleware` carries compiled C++ YARP 3.5 (programs and Python binding), which
+needs CPython 3.10; see `peer_venv.py` for where it lies.
 
 `python tests/support/cpp_venv.py` prepares that environment and says where it is.
 """
@@ -29,7 +33,9 @@ def environment_directory() -> Path:
 
 
 def prepare() -> Path:
-    """The environment's directory; makes the environment if it is not there. Or MissingPeer."""
+    """The directory; makes the environment if none is named and none there. Or MissingPeer."""
+    if named := os.environ.get("YARPY_CPP_YARP"):
+        return _installation(Path(named))
     directory = environment_directory()
 
     def fill() -> None:
@@ -37,6 +43,14 @@ def prepare() -> Path:
         run([str(directory / "bin/yarp"), "version"], "start the programs of C++ YARP")
 
     return make_once(directory, fill)
+
+
+def _installation(prefix: Path) -> Path:
+    for name in ("bin/yarp", "bin/python"):
+        if not (prefix / name).exists():
+            raise MissingPeer(f"YARPY_CPP_YARP has no {name}: name a prefix as cpp_venv.py says")
+    run([str(prefix / "bin/yarp"), "version"], "start the programs of C++ YARP")
+    return prefix
 
 
 def _find_python() -> Path:

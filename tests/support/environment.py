@@ -7,6 +7,8 @@ from collections.abc import Iterator
 import pytest
 from support.cpp import CppYarp
 
+_PEERS = ("YARPY_PEERS_DIR", "YARPY_CPP_YARP")
+
 
 @contextlib.contextmanager
 def configured_for(programs: CppYarp, by_file: bool) -> Iterator[None]:
@@ -16,7 +18,7 @@ def configured_for(programs: CppYarp, by_file: bool) -> Iterator[None]:
     """
     with pytest.MonkeyPatch.context() as patch:
         for name in list(os.environ):
-            if name.startswith(("YARP_", "YARPY_", "ROS_")) and name != "YARPY_PEERS_DIR":
+            if name.startswith(("YARP_", "YARPY_", "ROS_")) and name not in _PEERS:
                 patch.delenv(name)
         patch.setenv("YARP_CONFIG_HOME", str(programs.home / "config"))
         patch.setenv("YARP_DATA_HOME", str(programs.home / "data"))
