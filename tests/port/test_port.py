@@ -279,7 +279,7 @@ def test_asker_that_has_gone_is_an_error_of_reply(names: LocalNames) -> None:
             for _ in range(100):
                 message.reply(["x"])
                 assert message.answer is not None
-                message.answer.open = True
+                message.answer.right.append(True)
                 time.sleep(0.005)
         wait_until(lambda: not in_.inputs)
 

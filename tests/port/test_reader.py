@@ -12,7 +12,8 @@ from support.lasted import lasted
 from support.wait import HANG, wait_until
 
 from yarpy import network
-from yarpy.errors import PortClosed, Timeout
+from yarpy.data.bottle import Bottle
+from yarpy.errors import LinkClosed, PortClosed, Timeout, UnknownName
 from yarpy.nameserver.local import LocalNames
 from yarpy.port.port import BufferedPort, Port
 from yarpy.port.rpc import RpcClient
@@ -285,6 +286,102 @@ def test_question_of_an_asker_who_left_is_no_error_of_the_next_read(names: Local
         with RpcClient("/in", names=names) as other:
             assert other.call("x", timeout=20) == ["yes"]
     reader.join(20)
+
+
+class Slow:
+    """A value that takes as long as a test wants to spell."""
+
+    def __init__(self, value: object) -> None:
+        self.begun, self.free = threading.Event(), threading.Event()
+        self.value = value
+
+    def to_wire(self) -> tuple[bytes]:
+        self.begun.set()
+        assert self.free.wait(HANG)
+        if self.value is None:
+            raise TypeError("not this")
+        return (Bottle([self.value]).to_bytes(),)
+
+
+def _answer(message: Message, value: Slow) -> None:
+    with contextlib.suppress(TypeError, LinkClosed):
+        message.reply(value)
+
+
+@pytest.mark.parametrize("value", ["slow", None], ids=["sent", "not sent"])
+@pytest.mark.parametrize("leased", [False, True], ids=["mailbox", "lease"])
+def test_reader_leaves_a_question_that_another_thread_answers(
+    leased: bool, value: object, names: LocalNames
+) -> None:
+    """It is answered once: by that thread, or, if that could not, by nothing."""
+    with Port("/in", names=names) as in_, RpcClient("/in", names=names) as client:
+        answers: list[object] = []
+
+        def ask() -> None:
+            answers.extend(client.call(n, timeout=HANG) for n in range(60 if leased else 1))
+            answers.append(client.call("last", timeout=HANG))
+
+        asker = threading.Thread(target=ask)
+        asker.start()
+        message = in_.read(timeout=HANG)
+        while leased and not in_.inputs[0]._link.turn.leased:
+            message.reply(["quick"])
+            message = in_.read(timeout=HANG)
+        slow = Slow(value)
+        worker = threading.Thread(target=_answer, args=(message, slow))
+        worker.start()
+        assert slow.begun.wait(HANG)
+        with pytest.raises(Timeout):
+            in_.read(timeout=0.1)
+        threading.Timer(0.05, slow.free.set).start()
+        expected: list[object] = [[value] if value else []]
+        while (message := in_.read(timeout=HANG)).value != ["last"]:
+            message.reply(["quick"])
+            expected.append(["quick"])
+        message.reply(["end"])
+        asker.join(HANG)
+        worker.join(HANG)
+        assert answers[-len(expected) - 1 :] == [*expected, ["end"]]
+
+
+@pytest.mark.parametrize("leased", [False, True], ids=["mailbox", "lease"])
+def test_port_closes_while_another_thread_answers(
+    leased: bool, names: LocalNames, caplog: pytest.LogCaptureFixture
+) -> None:
+    """It does not wait for that thread, nor write where that one may be writing."""
+    with Port("/in", names=names) as in_, RpcClient("/in", names=names) as client:
+        failed: list[BaseException] = []
+
+        def ask() -> None:
+            with pytest.raises((LinkClosed, UnknownName)):
+                while True:
+                    client.call("x", timeout=HANG)
+
+        asker = threading.Thread(target=ask)
+        asker.start()
+        message = in_.read(timeout=HANG)
+        while leased and not in_.inputs[0]._link.turn.leased:
+            message.reply(["quick"])
+            message = in_.read(timeout=HANG)
+        slow = Slow("late")
+
+        def work() -> None:
+            try:
+                message.reply(slow)
+            except BaseException as error:
+                failed.append(error)
+
+        worker = threading.Thread(target=work)
+        worker.start()
+        assert slow.begun.wait(HANG)
+        served = in_.inputs[0]._link.served
+        in_.close()
+        assert served.wait(HANG)
+        slow.free.set()
+        for thread in (worker, asker):
+            thread.join(HANG)
+        assert [type(error) for error in failed] == [LinkClosed]
+    assert "fails" not in caplog.text
 
 
 def test_question_of_a_thread_that_ended_is_closed_by_the_next_read(names: LocalNames) -> None:

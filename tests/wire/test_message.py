@@ -178,12 +178,33 @@ def test_answer_tells_of_its_end_once_it_went_or_failed_for_good() -> None:
                 answer.give(value)
             except (TypeError, LinkClosed) as error:
                 assert type(error) is raised
-                assert answer.open == (raised is TypeError)
+                assert bool(answer.right) == (raised is TypeError)
                 assert len(ends) == (raised is LinkClosed)
         assert ends.pop() == "end"
         with pytest.raises(LocalProtocolError, match="already"):
             answer.give(2)
         assert not ends
+
+
+def test_thread_that_answers_tells_who_has_left_the_question_meanwhile() -> None:
+    """Whether it could answer or not; only one may, and a second one does not disturb it."""
+    seen: list[object] = []
+
+    def send(value: object) -> None:
+        seen.append(answer.busy)
+        answer.left = lambda: seen.append((answer.busy, len(answer.right)))
+        with pytest.raises(LocalProtocolError, match="already"):
+            answer.give("second")
+        seen.append(answer.busy)
+        Packet(value).blocks  # noqa: B018
+
+    answer = Answer(send)
+    with pytest.raises(TypeError):
+        answer.give(object())
+    assert seen == [True, True, (False, 1)]
+    answer.give(1)
+    assert seen[3:] == [True, True, (False, 0)]
+    assert not answer.busy
 
 
 def test_lines_are_text_for_people_and_a_string_for_programs() -> None:

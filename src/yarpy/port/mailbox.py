@@ -385,9 +385,11 @@ class Rendezvous(Mailbox):
                 self._leave(thread)
 
     def _leave(self, thread: threading.Thread) -> None:
-        question = self.held.pop(thread, None)
+        question = self.held.get(thread)
         if question is not None:
             question.leave()
+            if self.held.get(thread) is question:  # not before: an exception may come in between
+                self.held.pop(thread, None)
 
     def _next(self, token: object) -> Message | None:
         assert isinstance(token, Offer)

@@ -112,9 +112,9 @@ class RpcServer(BasePort):
             self._forward(message, answer)
         # A handler that has answered by `message.reply` returns None: there is nothing left to say.
         way = message.answer
-        if way is not None and (reply is not None or way.open):
+        if way is not None and (reply is not None or way.right):
             try:
-                (way.give if way.open else message.reply)(answer)
+                (way.give if way.right else message.reply)(answer)
             except Exception as error:
                 if not is_unsent(error):
                     raise

@@ -197,31 +197,50 @@ class Answer:
     """The way back of one question: a holder of the message may answer, once, from any thread.
 
     `send` puts it on the wire. `then` is called once that is done, or has failed for good; it is
-    set by the thread that waits for the end of the question.
+    set by the thread that waits for the end of the question. Who finds, when it leaves a question,
+    that another thread is answering sets `left`, which that thread calls behind its answer, and
+    then looks whether it is still `busy`.
     """
 
-    __slots__ = ("_send", "open", "then")
+    __slots__ = ("_ended", "_send", "left", "right", "then")
 
     def __init__(
         self, send: Callable[[object], None], then: Callable[[], None] | None = None
     ) -> None:
         self._send = send
         self.then = then
-        self.open = True
+        self.left: Callable[[], None] | None = None
+        self.right = [True]  # to answer; a thread takes it out, which only one can
+        self._ended = False  # who had the right has used it
+
+    @property
+    def busy(self) -> bool:
+        """Return whether a thread is answering."""
+        return not (self.right or self._ended)
 
     def give(self, value: object) -> None:
         """Send it. What cannot be sent leaves the question open. Raises as `Message.reply`."""
-        if not self.open:
-            raise LocalProtocolError("the question was answered already, or its sender went away")
-        self.open = False
+        try:
+            del self.right[0]  # no call: an exception out of a signal handler comes before or after
+        except IndexError:
+            raise LocalProtocolError(
+                "the question was answered already, or its sender went away"
+            ) from None
+        unsent = False
         try:
             self._send(value)
         except Exception as error:
-            self.open = is_unsent(error)
+            unsent = is_unsent(error)
             raise
         finally:
-            if self.then is not None and not self.open:
-                self.then()
+            if unsent:
+                self.right.append(True)
+            else:
+                self._ended = True
+                if self.then is not None:
+                    self.then()
+            if self.left is not None:
+                self.left()
 
 
 class Message(Generic[T]):
@@ -359,7 +378,7 @@ class Message(Generic[T]):
     @property
     def wants_reply(self) -> bool:
         """Return whether the sender is waiting for a reply."""
-        return self.answer is not None and self.answer.open
+        return self.answer is not None and bool(self.answer.right)
 
     def reply(self, value: object) -> None:
         """Answer the sender. Once, and only if it asked: see `wants_reply`.
@@ -368,7 +387,7 @@ class Message(Generic[T]):
         ValueError or OverflowError for what cannot be sent, which leaves the question open.
         """
         answer = self.answer
-        if answer is None or not answer.open:
+        if answer is None or not answer.right:
             raise LocalProtocolError(
                 f'"{self.source}" does not wait for a reply: it sent plain data, went away, or was '
                 "answered already; call it with an RpcClient to get replies"

@@ -24,7 +24,7 @@ from yarpy.link.receive.turn import SILENCE, Lease, Turn
 from yarpy.link.timing import Timing, chain_of, expected
 from yarpy.log import logger
 from yarpy.qos import NOTHING_ASKED, Qos, Sched
-from yarpy.scope import Flag
+from yarpy.scope import Flag, Waiter
 from yarpy.wire.message import CALL, DATA, QUIT, Message
 
 if TYPE_CHECKING:
@@ -202,11 +202,23 @@ class Inbound:
                 receiver.open_question(message)
             self.owner.receive(self, message)
             if not settled if message.answer is None else message.answer is receiver.question:
-                receiver.settle(message)
+                while not receiver.settle(message):
+                    self._let_answer(message)
             if lease is not None:
                 receiver.limit(SILENCE)
                 return lease
         return None
+
+    def _let_answer(self, message: Message) -> None:
+        """Wait until another thread has answered a question that its reader has left. Raises
+        LinkClosed when our side closes the connection: that thread may be writing even then."""
+        answer, done = message.answer, Waiter()
+        assert answer is not None
+        answer.left = done.wake
+        while answer.busy:
+            if self._closed:
+                raise LinkClosed("closed while a question was being answered")
+            done.wait()
 
     def _hand_over_last(self, word: Message) -> None:
         """Give the port what a peer that has gone without a goodbye has left for it."""
@@ -394,8 +406,12 @@ class Inbound:
 
     def leave(self, message: Message) -> None:
         """The reader is done with a message: an unanswered question is closed."""
+        answer = message.answer
         try:
-            self.receiver.settle(message)
+            while not self.receiver.settle(message) and answer is not None:
+                answer.left = partial(self.leave, message)  # that its end is not missed
+                if answer.busy:
+                    return
         except YarpError:
             pass  # the asker has gone
         self.turn.stir()
@@ -432,6 +448,9 @@ class Inbound:
             lease.forsaken = True  # a reader beneath us goes on, and finds the end, when we return
         self._closed = True
         self.turn.end()
+        question = self.receiver.question
+        if question is not None and question.left is not None:
+            question.left()
         self.driver.transport.interrupt()
 
     def _tell(self, error: YarpError) -> None:

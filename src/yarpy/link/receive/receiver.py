@@ -287,20 +287,28 @@ class Receiver:
         self.question = message.answer = Answer(self._reply)
         return True
 
-    def settle(self, message: Message) -> None:
-        """The port is done with `message`: it is acknowledged, or, if still open, answered."""
+    def settle(self, message: Message) -> bool:
+        """The port is done with `message`: it is acknowledged, or, if still open, answered. Return
+        False if another thread is answering, who alone may write."""
         answer = message.answer
         if answer is not None:
             if answer is not self.question:
-                return  # answered in time, or long ago
-            answer.open = False
+                return True  # answered in time, or long ago
+            try:
+                del answer.right[0]  # as `Answer.give`
+            except IndexError:
+                return answer is not self.question
             # Without any answer a caller waits for ever; one in C++ takes the acknowledgement for
             # it. For a person at a text prompt, a name service or a page, silence is better than an
             # empty answer.
-            if self.carrier.spelling != "text" and not self.carrier.delivery.lossy:
-                self._reply(Bottle())
-                return
-            self.question = None
+            try:
+                if self.carrier.spelling != "text" and not self.carrier.delivery.lossy:
+                    self._reply(Bottle())
+                    return True
+                self.question = None
+            finally:
+                if answer is self.question:  # interrupted: whoever comes next closes it
+                    answer.right.append(True)
         if self.carrier.acks:
             self._unsent_acks += 1
             if self.held is message:
@@ -310,6 +318,7 @@ class Receiver:
                 message.spelling == "binary" and len(message.payload) >= LARGE
             ):
                 self.send_acks()
+        return True
 
     def refuse(self, message: Message) -> None:
         """A monitor dropped it: its sender gets an acknowledgement and no more."""
@@ -342,6 +351,10 @@ class Receiver:
             self.carrier.encode_reply(stream, value)
         except Exception as error:
             mark_unsent(error)  # which leaves the question open
+            raise
+        except BaseException:
+            self.tear()
+            self.question = None
             raise
         try:
             if self.carrier.acks:
