@@ -73,6 +73,7 @@ _DEVICES: Final[dict[str, str]] = {
     "portaudioPlayer": "hardware.portaudio:player",
     "portaudioRecorder": "hardware.portaudio:recorder",
     "rangefinder2D_nws_yarp": "wrapper:Laser",
+    "rosControlBoard": "hardware.topics:ros_board",
     "remotecontrolboardremapper": "control_board.remapper:remote_remapper",
     "test_grabber": "simulated.plugin:camera",
     "virtualAnalogServer": "analog.plugin:VirtualAnalog",

@@ -82,6 +82,7 @@ _OTHERS: Final = {
     "portaudioRecorder": "the microphone of this computer: served by audioRecorder_nws_yarp",
     "remotecontrolboardremapper": "the joints of boards of other programs, as one board",
     "robotDescriptionStorage": "a list of devices: served by robotDescription_nws_yarp",
+    "rosControlBoard": "the joints of a robot of ROS: served by controlBoard_nws_yarp",
     "simulatedEye": "eye of the simulated iCub: attach simulatedHead",
     "simulatedHead": "joints of the simulated iCub's head: served by controlBoard_nws_yarp",
     "simulatedInertial": "inertial unit of the simulated iCub: attach simulatedHead",
