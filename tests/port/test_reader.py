@@ -9,6 +9,7 @@ from pathlib import Path
 
 import pytest
 from support.lasted import lasted
+from support.moments import Cut, cut, moments
 from support.wait import HANG, wait_until
 
 from yarpy import network
@@ -342,6 +343,37 @@ def test_reader_leaves_a_question_that_another_thread_answers(
         asker.join(HANG)
         worker.join(HANG)
         assert answers[-len(expected) - 1 :] == [*expected, ["end"]]
+
+
+@pytest.mark.parametrize("leased", [False, True], ids=["mailbox", "lease"])
+def test_reader_that_is_interrupted_while_it_leaves_a_question_closes_it_next_time(
+    leased: bool, names: LocalNames
+) -> None:
+    """Else whoever asks waits for ever, and so does the connection."""
+    number = 0
+    for number, moment in enumerate(moments()):
+        with Port("/in", names=names) as in_, RpcClient("/in", names=names) as client:
+            answers: list[object] = []
+            asker = threading.Thread(target=_ask_until, args=(client, answers), daemon=True)
+            asker.start()
+            message = in_.read(timeout=HANG)
+            while leased and not in_.inputs[0]._link.turn.leased:
+                message.reply(["quick"])
+                message = in_.read(timeout=HANG)
+            with contextlib.suppress(Cut, Timeout), moment.interrupts(cut):
+                in_.read(timeout=0)
+            with contextlib.suppress(Timeout):
+                in_.read(timeout=0)
+            asker.join(HANG)
+            assert not asker.is_alive(), f"moment {number}"
+    assert number > 10
+
+
+def _ask_until(client: RpcClient, answers: list[object]) -> None:
+    """Ask until a question is closed, or the connection, where part of an answer has left."""
+    with contextlib.suppress(LinkClosed):
+        while [] not in answers:
+            answers.append(client.call("x", timeout=HANG))
 
 
 @pytest.mark.parametrize("leased", [False, True], ids=["mailbox", "lease"])

@@ -509,6 +509,36 @@ def test_a_signal_handler_closes_a_port_over_a_frame_that_changes_the_lists(
     assert names.query("/beneath") is None
 
 
+def test_what_a_signal_handler_forgets_stays_forgotten(names: yarpy.LocalNames) -> None:
+    """It comes in the middle of changes to the same lists."""
+    tried = 0
+    for one in moments():
+        tried += 1
+        with (
+            yarpy.Port("/first", names=names) as first,
+            yarpy.Port("/second", names=names) as second,
+            yarpy.Port("/third", names=names) as third,
+        ):
+            for port in (first, second, third):
+                for peer in ("/away", "/gone"):
+                    reconnect.output_lost(port._hub, Route(port.name, peer, "tcp", peer=peer))
+
+            def forget(second: yarpy.Port = second, third: yarpy.Port = third) -> None:
+                reconnect.forget(second._hub)
+                assert reconnect.give_up(third._hub, "/gone")
+
+            with one.interrupts(forget):
+                reconnect.forget(first._hub)
+            watched = reconnect.RECONNECTOR._hubs
+            if one.came:
+                assert second._hub not in watched
+                assert not reconnect.pending(second._hub)
+                assert [route.target for route in reconnect.pending(third._hub)] == ["/away"]
+            assert first._hub not in watched
+            assert third._hub in watched
+    assert tried > 10
+
+
 def test_a_goodbye_that_comes_behind_the_end() -> None:
     """The end of a stream of datagrams may come first; it was meant all the same."""
     with yarpy.Port("/in", names=yarpy.LocalNames()) as port:

@@ -15,6 +15,7 @@ import math
 import random
 import threading
 import time
+from collections.abc import Callable
 from dataclasses import dataclass, field
 from functools import partial
 from typing import Final
@@ -117,7 +118,7 @@ class Reconnector:
     def watch(self, hub: Hub) -> None:
         """Look after a registered port."""
         with self._lock:
-            self._hubs.append(hub)
+            self._hubs = [*self._hubs, hub]
             if self._thread is None or not self._thread.is_alive():
                 self._thread = Thread(target=self._run, name="yarpy reconnect", daemon=True)
                 self._thread.start()
@@ -125,11 +126,26 @@ class Reconnector:
     def forget(self, hub: Hub) -> None:
         """The port closes."""
         with self._lock:
-            self._hubs = [item for item in self._hubs if item is not hub and not item.life.closing]
-            self._lost = [item for item in self._lost if item.hub is not hub]
+            while True:
+                before = self._hubs
+                left = [item for item in before if item is not hub and not item.life.closing]
+                if self._hubs is before:  # else a signal handler has closed another meanwhile
+                    self._hubs = left
+                    break
+            self._keep(lambda item: item.hub is not hub)
             last = not self._hubs
         if last:
             self._wake.wake()
+
+    def _keep(self, stays: Callable[[_Lost], bool]) -> bool:
+        """Forget what does not stay, and what a signal handler forgets meanwhile; return whether
+        there was any."""
+        while True:
+            before = self._lost
+            left = [item for item in before if stays(item)]
+            if self._lost is before:
+                self._lost = left
+                return len(left) < len(before)
 
     def add(self, hub: Hub, route: Route, incoming: bool, gone: bool = False) -> None:
         """A connection failed; `gone`: the other end's program has ended, or lost it."""
@@ -141,7 +157,7 @@ class Reconnector:
             added = _Lost(hub, route, incoming, seen_gone=gone)
             if incoming and not _is_pulled(route):
                 self._make_room(added)
-            self._lost.append(added)
+            self._lost = [*self._lost, added]
         self._wake.wake()
 
     def _make_room(self, added: _Lost) -> None:
@@ -155,7 +171,7 @@ class Reconnector:
         over = {item for item in inputs if _peer(item) == _peer(added)}
         if not over and len(inputs) >= MOST_SENDERS:
             over = {inputs[0]}
-        self._lost = [item for item in self._lost if item not in over]
+        self._keep(lambda item: item not in over)
 
     def give_up(
         self, hub: Hub, name: str, incoming: bool | None = None, before: float = math.inf
@@ -169,10 +185,7 @@ class Reconnector:
             return this and incoming in (None, item.incoming)
 
         with self._lock:
-            left = [item for item in self._lost if not meant(item)]
-            found = len(left) < len(self._lost)
-            self._lost = [item for item in left if not item.hub.life.closing]
-        return found
+            return self._keep(lambda item: not meant(item))
 
     def over(self, hub: Hub, source: str) -> None:
         """A sender has said goodbye for an input that has just ended: its thread may be about to
@@ -266,7 +279,7 @@ class Reconnector:
             waited = now - item.since > INPUT_TIMEOUT
             if done or (waited and item.incoming and not _is_pulled(item.route)):
                 with self._lock:
-                    self._lost = [other for other in self._lost if other is not item]
+                    self._keep(lambda other: other is not item)
             else:
                 item.put_off(now)
 
