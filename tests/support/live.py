@@ -14,7 +14,7 @@ from collections.abc import Iterator
 
 from support.capture import Capture, Step
 from support.difference import LIVE_DIFFERENT
-from support.wait import HANG
+from support.wait import HANG, wait_until
 
 from yarpy import network
 from yarpy.data.bottle import Bottle
@@ -59,9 +59,11 @@ class World:
         return self.ports[name]
 
     def connect(self, source: str, target: str) -> None:
-        before = len(self.port(target).inputs)
+        """Connect them; whoever asked the target who it is has left, too, and is not listed."""
+        inputs = self.port(target)._hub.inputs
+        before = len(inputs.links)
         self.port(source).connect(target)
-        assert self.port(target).wait_for_inputs(before + 1, timeout=HANG)
+        wait_until(lambda: [link.route.source for link in inputs.links[before:]] == [source])
 
     def admin(self, name: str, text: str) -> None:
         network.admin(name, *Bottle.from_text(text), names=self.names)
