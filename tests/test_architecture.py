@@ -102,7 +102,8 @@ PURE_FILES = {
     *(f"peers/{name}/carrier.py" for name in PEERS),
     *(f"peers/mqtt/{name}.py" for name in ("broker", "packet", "session")),
     *(f"peers/ros/{name}.py" for name in ("body", "greeting", "header", "service/carrier")),
-    *("peers/ros2/body.py", "peers/zmq/zmtp.py"),
+    *(f"peers/zmq/{name}.py" for name in ("zmtp", "role", "writing", "reading")),
+    "peers/ros2/body.py",
 }
 IMPURE_MODULES = {"socket", "threading", "asyncio", "time", "select", "selectors", "queue"}
 
