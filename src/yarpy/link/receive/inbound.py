@@ -150,6 +150,7 @@ class Inbound:
         idle_timeout = self.carrier.limits.idle_timeout
         receiver = self.receiver
         lease: Lease | None = None
+        answered = False  # by another thread, which may be writing
         try:
             while not (self._quit or self._reversed) or receiver.held is not None:
                 if lease is not None or idle_timeout is not None:
@@ -157,11 +158,12 @@ class Inbound:
                 lease = self._read_on()
                 if lease is not None:
                     self.turn.park(lease, self._is_asked)
+                    answered = receiver.question is not None
                     if lease.forsaken:
                         self.counter.drops += receiver.held is not None
                         break
-                    if receiver.question is not None:
-                        break  # closed; whoever answers writes there, not we
+                    if answered:
+                        break  # closed
         except LinkClosed as error:
             reason = "" if self._closing else str(error)  # whoever ends it himself knows
         except YarpError as error:
@@ -180,7 +182,7 @@ class Inbound:
             return
         if not (self._quit or self._closing) and (word := self.carrier.last_word()) is not None:
             self._hand_over_last(word)
-        receiver.finish()
+        receiver.finish(acks=not answered)
         self.owner.input_ended(self, reason, self._quit)
 
     def _is_asked(self) -> bool:

@@ -405,10 +405,10 @@ class Receiver:
                 self.tear()
                 raise
 
-    def finish(self) -> None:
-        """The last acknowledgements, and the end."""
+    def finish(self, acks: bool = True) -> None:
+        """The last acknowledgements, unless another thread writes there, and the end."""
         try:
-            if self.question is None:  # else whoever answers may be writing
+            if acks:
                 self.send_acks()
         except YarpError:
             pass  # the peer has gone
