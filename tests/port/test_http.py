@@ -277,7 +277,7 @@ def test_time_for_a_request_begins_with_it(
     echo: yarpy.RpcServer, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """Not when the last one was answered, with or without the port."""
-    monkeypatch.setattr("yarpy.carriers.web.http.carrier.TIME", 0.5)
+    monkeypatch.setattr("yarpy.carriers.web.http.exchange.TIME", 0.5)
     connection = client(echo)
     for target in ("/?req=x", "/favicon.ico", "/?req=x"):
         assert get(connection, target)[0] in (200, 204)

@@ -17,7 +17,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 from support.capture import CAPTURES, load_capture
-from support.steps import chop, finish
+from support.steps import chop
 from support.transport import ScriptTransport
 
 import yarpy
@@ -26,16 +26,14 @@ from yarpy.carriers.base import Carrier
 from yarpy.carriers.web.http.carrier import TIME, Http
 from yarpy.data.bottle import Bottle
 from yarpy.data.value import Vocab
-from yarpy.errors import LinkClosed, Timeout, YarpError
-from yarpy.limit import HTTP_BODY, HTTP_HEAD
+from yarpy.errors import LinkClosed, YarpError
 from yarpy.link.begin.greeting import driver_of
 from yarpy.link.begin.handshake import recognise
 from yarpy.link.receive.inbound import Inbound
 from yarpy.route import Route
 from yarpy.testing import CarrierConformance
 from yarpy.wire.effects import Claim, May, Show, Within
-from yarpy.wire.message import QUIT, Lines, Message, Packet
-from yarpy.wire.steps import Steps
+from yarpy.wire.message import Lines, Message, Packet
 from yarpy.wire.stream import ByteStream, run
 
 
@@ -403,31 +401,6 @@ def test_requests_in_a_burst_are_answered_one_by_one() -> None:
     assert len(owner.heard) == 100
 
 
-@pytest.mark.parametrize(
-    "begun",
-    [
-        b"GET /?req=x HTTP/1.1\r\nHost: x\r\n",
-        b"POST /form HTTP/1.1\r\nHost: x\r\nContent-Length: 9\r\n\r\nre",
-    ],
-)
-def test_request_that_does_not_come_is_told_so(begun: bytes) -> None:
-    """What the link does when a peer is too slow; the next requests are not read."""
-    carrier, stream = Http(Route("", "/x", "http")), ByteStream()
-    stream.feed(begun)
-    if begun.startswith(b"GET"):
-        steps: Steps[object] = carrier.welcome(stream, begun[:8])
-        stream.head = 8
-    else:
-        steps = carrier.decode(stream)
-    asked = list(iter(lambda: next(steps), None))  # what it yields before it wants more bytes
-    assert asked == ([Within(TIME)] if begun.startswith(b"POST") else [])
-    with pytest.raises(Timeout):
-        steps.throw(Timeout("late"))
-    found = responses(b"".join(map(bytes, stream.take_output())), "POST")[0]
-    assert (found[0], found[1]["connection"]) == (408, "close")
-    assert finish(carrier.decode(stream)).key == QUIT
-
-
 def test_request_has_limited_time_from_its_first_byte_to_its_last() -> None:
     carrier, stream = Http(Route("", "/x", "http")), ByteStream()
     wire = b"GET /favicon.ico HTTP/1.1\r\nHost: x\r\n\r\n"
@@ -478,57 +451,6 @@ def test_methods_that_ports_do_not_have() -> None:
         assert status == 405
         assert b"GET, HEAD, POST and OPTIONS" in body
         assert headers["allow"] == "GET, HEAD, POST, OPTIONS"
-
-
-def test_body_that_waits_to_be_asked_for() -> None:
-    """curl does so with large bodies."""
-    head = b"POST /form HTTP/1.1\r\nHost: x\r\nExpect: 100-continue\r\nContent-Length: 5\r\n\r\n"
-    _, said = serve(head, b"req=x")
-    assert said.startswith(b"HTTP/1.1 100 ")
-    assert responses(said, "POST")[0][0] == 200
-
-
-def test_body_in_chunks() -> None:
-    head = b"POST /form HTTP/1.1\r\nHost: x\r\nTransfer-Encoding: chunked\r\n\r\n"
-    owner, _ = serve(head + b"4\r\nreq=\r\n3\r\none\r\n0\r\n\r\n" + ONE)
-    assert [m.value for m in owner.heard] == [["one"], ["one"]]
-
-
-BAD = [
-    (b"GET / HTTP/1.1\r\n\r\n", 400),  # no Host
-    (b"GET / HTTP/9\r\n\r\n", 400),
-    (b"GET /  x HTTP/1.1\r\nHost: x\r\n\r\n", 400),
-    (b"GET / HTTP/1.1\r\nHost: x\r\nno colon\r\n\r\n", 400),
-    (b"GET / HTTP/1.1\r\nHost: x\r\nContent-Length: -1\r\n\r\n", 400),
-    (b"GET / HTTP/1.1\r\nHost: x\r\nContent-Length: 1\r\nContent-Length: 2\r\n\r\n", 400),
-    (b"POST /form HTTP/1.1\r\nHost: x\r\nTransfer-Encoding: gzip\r\n\r\n", 501),
-    (b"POST /form HTTP/1.1\r\nHost: x\r\nContent-Length: 10\r\n\r\nreq=x", 400),  # too short
-    (b"POST /form HTTP/1.1\r\nHost: x\r\nTransfer-Encoding: chunked\r\n\r\nzz\r\n", 400),
-    (b"POST /form HTTP/1.1\r\nHost: x\r\nContent-Length: %d\r\n\r\n" % (HTTP_BODY + 1), 413),
-    (b"POST /form HTTP/1.1\r\nHost: x\r\nContent-Length: %s\r\n\r\n" % (b"9" * 15), 413),
-    (b"GET / HTTP/1.1\r\nHost: x\r\nX: " + b"y" * HTTP_HEAD, 431),
-    (b"GET / HTTP/1.1\r\nHost: x\r\nX: " + b"y" * HTTP_HEAD + b"\r\n\r\n", 431),
-    (b"GET /" + b"y" * 2 * HTTP_HEAD, 431),
-]
-
-
-@pytest.mark.parametrize(("request_", "status"), BAD, ids=lambda item: str(item)[:60])
-@pytest.mark.parametrize("piece", [0, 1000])
-def test_bad_requests(request_: bytes, status: int, piece: int) -> None:
-    owner, said = serve(*chop(request_, piece))
-    found = responses(said, "POST")[0]
-    assert found[0] == status
-    assert not owner.heard
-    assert found[1].get("connection") == "close" or status == 400
-    assert len(found[2]) < 300
-
-
-def test_body_without_end_is_not_collected() -> None:
-    head = b"POST /form HTTP/1.1\r\nHost: x\r\nTransfer-Encoding: chunked\r\n\r\n"
-    chunk = b"100000\r\n" + b"x" * (1 << 20) + b"\r\n"
-    owner, said = serve(head, *[chunk] * 40)
-    assert responses(said, "POST")[0][0] == 413
-    assert not owner.heard
 
 
 def test_mistakes_in_a_request_leave_the_connection_open() -> None:
@@ -698,23 +620,6 @@ def test_other_pages_may_not_act(monkeypatch: pytest.MonkeyPatch, text: str) -> 
         assert get("/?req=x", "Origin: http://x:1")[0] == 200
         preflight = get("/form", evil, method="OPTIONS")[1]
         assert preflight["access-control-allow-methods"] == "GET, HEAD"
-
-
-LENGTHS = [
-    "Content-Length: 3\r\nContent-Length: 4",
-    "Content-Length: 3\r\nTransfer-Encoding: chunked",
-    "Transfer-Encoding: chunked\r\nContent-Length: 3",
-    "Transfer-Encoding: identity\r\nContent-Length: 3",
-]
-
-
-@pytest.mark.parametrize("lines", LENGTHS)
-def test_two_lengths_are_refused(lines: str) -> None:
-    """Somebody in between may have read another request (smuggling)."""
-    wire = f"POST /form HTTP/1.1\r\nHost: x\r\n{lines}\r\n\r\n0\r\n\r\n".encode()
-    owner, said = serve(wire)
-    assert said.split(b" ")[1] in (b"400", b"501")
-    assert owner.heard == []
 
 
 def test_name_of_another_is_turned_away_on_the_loopback() -> None:

@@ -6,28 +6,25 @@
     GET /r                          every message that the port writes, until the client hangs up
     GET /r  Accept: text/event-stream          the same for JavaScript's EventSource
 
-Rules: `request` reads what a request means, `response` writes the answer, `origin` says who may
-act; here is only the protocol, with a new h11 for each request. Every request gets exactly one
-response, even if the port does not reply (204, or `[]` in JSON) or the request is too slow (408).
-Bad requests get their status and end the connection. A slow consumer misses messages. Between ports
-each message is a POST and its response the acknowledgement (`client`).
+Rules: `exchange` reads a request from the stream, `request` what it means, `response` makes the
+answer, `origin` says who may act. Every request gets exactly one response, even if the port does
+not reply (204, or `[]` in JSON). A slow consumer misses messages. Between ports each message is a
+POST and its response the acknowledgement (`client`).
 """
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from dataclasses import replace
 from typing import TYPE_CHECKING, Final
 
 from yarpy import registry
 from yarpy.carriers.base import OVER_TCP, Carrier, Delivery, Limits
-from yarpy.carriers.web.http.client import ENVELOPE, HttpClient
-from yarpy.carriers.web.http.message import CONTINUE, LAST_CHUNK, chunk, next_event, two_lengths
+from yarpy.carriers.web.http.client import HttpClient
+from yarpy.carriers.web.http.exchange import TIME, Exchange, whole_head
+from yarpy.carriers.web.http.message import LAST_CHUNK, chunk
 from yarpy.carriers.web.http.origin import may_not_act, origins_of
 from yarpy.carriers.web.http.page import Pieces
-from yarpy.carriers.web.http.refusal import linger
 from yarpy.carriers.web.http.response import (
-    CUT_OFF,
     LATE,
     NO_SUCH_METHOD,
     UNSPEAKABLE,
@@ -40,21 +37,16 @@ from yarpy.carriers.web.http.response import (
 )
 from yarpy.carriers.web.http.token import claim, cookie
 from yarpy.carriers.web.upgrade import offered_subprotocols
-from yarpy.errors import LinkClosed, LocalProtocolError, RemoteProtocolError, Timeout, YarpError
+from yarpy.errors import LinkClosed, Timeout, YarpError
 from yarpy.facts import MAGIC_SIZE, Reach
-from yarpy.limit import HTTP_BODY, HTTP_HEAD
 from yarpy.route import Route
-from yarpy.wire.effects import HEAR, Flush, May, Show, Within
+from yarpy.wire.effects import HEAR, Flush, May, Show
 from yarpy.wire.message import CALL, QUIT, Lines, Message, Packet, Refused
 from yarpy.wire.steps import Steps
 from yarpy.wire.stream import ByteStream
 
 if TYPE_CHECKING:
-    import h11
-
     from yarpy.carriers.web.http.request import Form, Intent, Request
-
-TIME: Final = 60.0  # seconds a connection may be idle, and a request may take to arrive
 
 _RIGHTS: Final = ("read", "write", "administer", "attach", "register")
 _METHODS: Final = (b"GET /", b"POST /", b"HEAD /", b"OPTIONS ", b"PUT /", b"DELETE /", b"PATCH /")
@@ -78,12 +70,8 @@ class Http(Carrier):
         super().__init__(route)
         self.origins = origins_of()
         self._responder = Responder(route, self.origins)
-        # The request that is being read or answered:
-        self._headers: Mapping[str, str] = {}
-        self._head_only = False
-        self._modern = False  # HTTP/1.1, which knows chunks
-        self._finished = False  # the response is complete
-        self._stays = False  # keep the connection open for the next one
+        self._exchange = Exchange()  # the request that is being read or answered
+        self._finished = False  # the last response is complete
         self._intent: Intent | None = None  # what is being answered
         self._taken = 0  # messages handed to the port, and those acknowledged
         self._acked = 0
@@ -109,8 +97,7 @@ class Http(Carrier):
         self.route.source = "web"
         stream.unread(len(first))
         try:
-            while stream.waiting < HTTP_HEAD and not _complete(stream):
-                yield from stream.more(stream.waiting + 1)
+            yield from whole_head(stream)
         except Timeout:
             self._respond(stream, LATE)
             raise
@@ -127,8 +114,11 @@ class Http(Carrier):
             if self._intent is not None:
                 self._answer_nothing(stream)  # the next request is already waiting
                 continue
-            request = yield from self._read_request(stream)
-            intent = (yield from self._understood(stream, request)) if request is not None else None
+            self._exchange = Exchange()
+            self._finished = True  # if it cannot be read to its end
+            request = yield from self._exchange.read(stream)
+            self._finished = False
+            intent = yield from self._understood(stream, request)
             if isinstance(intent, Carrier):
                 return Message("r", intent)
             if intent is None:
@@ -138,84 +128,20 @@ class Http(Carrier):
                 self._begin_reading(stream, intent)
                 return Message("r")
             self._intent = intent
-            return intent.message(_envelope(self._headers))
+            return intent.message(self._exchange.envelope)
         return Message(QUIT)
-
-    def _read_request(self, stream: ByteStream) -> Steps[Request | None]:
-        """The next request with its body; None if it was refused."""
-        import h11
-
-        from yarpy.carriers.web.http.request import Request
-
-        self._headers = {}
-        self._head_only = self._modern = self._stays = False
-        talk = h11.Connection(h11.SERVER, max_incomplete_event_size=HTTP_HEAD)
-        yield from stream.more(1)
-        yield Within(TIME)
-        body = bytearray()
-        most = min(HTTP_BODY, stream.limit)
-        refusal = 413, f"a body may have at most {most} bytes"
-        try:
-            head = yield from next_event(stream, talk)
-            if not isinstance(head, h11.Request):
-                raise LinkClosed("the peer closed the connection")
-            self._take_head(head)
-            event = None
-            if two_lengths(head):
-                refusal = 400, "a body has either a Content-Length or chunks, not both"
-            elif sum(map(len, (head.target, *self._headers, *self._headers.values()))) > HTTP_HEAD:
-                refusal = 431, f"the head of a request may have at most {HTTP_HEAD} bytes"
-            elif int(self._headers.get("content-length", "0")) <= most:
-                if talk.they_are_waiting_for_100_continue:
-                    stream.write(CONTINUE)
-                event = yield from next_event(stream, talk)
-                while isinstance(event, h11.Data) and len(body) <= most:
-                    body += event.data
-                    event = yield from next_event(stream, talk)
-        except h11.RemoteProtocolError as error:
-            event, refusal = None, (error.error_status_hint, str(error))
-        except Timeout:
-            self._stays = False
-            self._respond(stream, LATE)
-            raise
-        except LinkClosed:
-            if self._headers:
-                self._respond(stream, CUT_OFF)
-            raise
-        if not isinstance(event, h11.EndOfMessage):
-            yield from self._refuse(stream, *refusal)
-        yield Within(None)
-        rest, _ = talk.trailing_data
-        stream.unread(len(rest))  # of the next request
-        target = head.target.decode("latin-1")
-        return Request(head.method.decode("ascii"), target, self._headers, bytes(body))
-
-    def _take_head(self, head: h11.Request) -> None:
-        self._headers = {
-            name.decode("ascii"): value.decode("latin-1") for name, value in head.headers
-        }
-        self._head_only = head.method == b"HEAD"
-        self._modern = head.http_version >= b"1.1"
-        self._stays = self._modern and "close" not in self._headers.get("connection", "").lower()
-
-    def _refuse(self, stream: ByteStream, status: int, text: str) -> Steps[None]:
-        """Answer a request that cannot be read to its end, and end the connection."""
-        self._stays = False
-        self._respond(stream, complaint(status, text))
-        if status in (413, 431):
-            yield from linger(stream)
-        raise RemoteProtocolError(f"HTTP {status}: {text}")
 
     def _understood(self, stream: ByteStream, request: Request) -> Steps[Intent | Carrier | None]:
         """Return what the request asks of the port; None if it was answered without the port; a
         carrier if that one takes over."""
         from yarpy.carriers.web.http.request import MAY, Refusal, likes, page_asked, read_intent
 
-        refusal = self.origins.refusal(self._headers, self.route.host, self._secure)
+        headers = self._exchange.headers
+        refusal = self.origins.refusal(headers, self.route.host, self._secure)
         if refusal is not None:
             self._respond(stream, complaint(*refusal))
             return None
-        shown = yield from claim(request.target, self._headers)
+        shown = yield from claim(request.target, headers)
         if shown.refusal:
             self._respond(stream, complaint(403, shown.refusal))
             return None
@@ -224,7 +150,7 @@ class Http(Carrier):
             return None
         request = replace(request, target=shown.target)
         if request.method == "OPTIONS":
-            self._respond(stream, self._responder.preflight(self._headers))
+            self._respond(stream, self._responder.preflight(headers))
             return None
         if request.method not in ("GET", "HEAD", "POST"):
             self._respond(stream, NO_SUCH_METHOD)
@@ -242,12 +168,12 @@ class Http(Carrier):
             asked = None  # pages show what the program knows
         page = (yield Show(*asked)) if asked else None
         if page is not None:
-            if not self.origins.shows(self._headers, self._secure):
-                self._respond(stream, complaint(403, may_not_act(self.origins, self._headers)))
+            if not self.origins.shows(headers, self._secure):
+                self._respond(stream, complaint(403, may_not_act(self.origins, headers)))
                 return None
-            response = self._responder.shown(page, self._headers)
+            response = self._responder.shown(page, headers)
             self._respond(stream, response)
-            if isinstance(response.body, Pieces) and not self._head_only:
+            if isinstance(response.body, Pieces) and not self._exchange.head_only:
                 yield from _send(stream, response.body)
             return None
         intent = read_intent(request)
@@ -262,9 +188,10 @@ class Http(Carrier):
 
     def _screened(self, stream: ByteStream, intent: Intent) -> Intent | None:
         """The intent, unless it must not reach the port."""
-        if intent.acts and not self.origins.admits(self._headers, self._secure, intent.asks):
-            self._respond(stream, complaint(403, may_not_act(self.origins, self._headers)))
-        elif self._head_only and (intent.acts or intent.key == "r"):
+        headers = self._exchange.headers
+        if intent.acts and not self.origins.admits(headers, self._secure, intent.asks):
+            self._respond(stream, complaint(403, may_not_act(self.origins, headers)))
+        elif self._exchange.head_only and (intent.acts or intent.key == "r"):
             # HEAD must change nothing, so there is no reply whose length could be given.
             self._respond(stream, bare(intent))
         elif (intent.key, intent.form) == ("r", "page"):
@@ -283,7 +210,7 @@ class Http(Carrier):
             if isinstance(value, Refused) and intent.content is None:
                 response = complaint(value.status, value.why)
             else:
-                response = self._responder.reply(intent, value, self._host)
+                response = self._responder.reply(intent, value, self._exchange.host)
             if response.endless:
                 self._intent = None
                 self._begin_stream(stream, "reply_page", response)
@@ -296,7 +223,7 @@ class Http(Carrier):
 
     def encode_lines(self, stream: ByteStream, lines: list[str]) -> None:
         if self._intent is not None:
-            said = self._responder.said(self._intent, Lines(lines), self._host)
+            said = self._responder.said(self._intent, Lines(lines), self._exchange.host)
             self._respond(stream, said)
 
     def encode_ack(self, stream: ByteStream, count: int) -> None:
@@ -306,39 +233,24 @@ class Http(Carrier):
             self._answer_nothing(stream)
 
     def encode_quit(self, stream: ByteStream) -> None:
-        if self._streaming and self._modern:
+        if self._streaming and self._exchange.modern:
             stream.write(LAST_CHUNK)
         self._streaming = False
 
     def _answer_nothing(self, stream: ByteStream) -> None:
         assert self._intent is not None
-        self._respond(stream, self._responder.nothing(self._intent, self._host))
+        self._respond(stream, self._responder.nothing(self._intent, self._exchange.host))
 
     @property
     def _secure(self) -> bool:
         """Return whether the browser uses TLS."""
         return "tls" in self.route.spec.tokens
 
-    @property
-    def _host(self) -> str:
-        return self._headers.get("host", "")
-
     def _respond(self, stream: ByteStream, response: Response) -> None:
         """Write a whole response."""
         self._intent = None
-        last = []
-        if not self._stays:
-            last.append(("Connection", "close"))
-            self._finished = True
-        try:
-            head = response.head(*last)
-        except LocalProtocolError as error:
-            response = complaint(500, str(error))
-            head = response.head()
-        if isinstance(response.body, bytes) and response.body and not self._head_only:
-            stream.write(head, response.body)
-        else:
-            stream.write(head)
+        self._finished = not self._exchange.stays
+        self._exchange.respond(stream, response)
 
     # -- a reader ---------------------------------------------------------------------------------
 
@@ -355,7 +267,7 @@ class Http(Carrier):
         self._streaming, self._form = True, form
         self.acks = False
         self.delivery = Delivery(lossy=True, backlog=16, interval=interval, coalesces=False)
-        way = ("Transfer-Encoding", "chunked") if self._modern else ("Connection", "close")
+        way = ("Transfer-Encoding", "chunked") if self._exchange.modern else ("Connection", "close")
         stream.write(response.head(way))
         if isinstance(response.body, bytes) and response.body:
             self._write_part(stream, response.body)
@@ -371,7 +283,7 @@ class Http(Carrier):
             return None
         old = self.route
         mjpeg = Mjpeg(Route("", old.target, old.spec.over("mjpeg"), old.port, old.host))
-        mjpeg.begin(stream, options, self._headers)
+        mjpeg.begin(stream, options, self._exchange.headers)
         return mjpeg
 
     def prepare(self, packet: Packet) -> bool:
@@ -392,7 +304,7 @@ class Http(Carrier):
         return part(packet, self._form, self._pixels)
 
     def _write_part(self, stream: ByteStream, data: bytes) -> None:
-        stream.write(chunk(data) if self._modern else data)
+        stream.write(chunk(data) if self._exchange.modern else data)
 
     # -- dialling ---------------------------------------------------------------------------------
 
@@ -412,17 +324,6 @@ class Http(Carrier):
             self._confirmed = False
         else:
             yield from self._client.response(stream)
-
-
-def _complete(stream: ByteStream) -> bool:
-    """Return whether the head of a request has arrived."""
-    buffer, head, tail = stream.buffer, stream.head, stream.tail
-    return buffer.find(b"\n\r\n", head, tail) >= 0 or buffer.find(b"\n\n", head, tail) >= 0
-
-
-def _envelope(headers: Mapping[str, str]) -> str:
-    text = headers.get(ENVELOPE, "")
-    return text if text.isascii() and text.isprintable() else ""
 
 
 def _send(stream: ByteStream, body: Pieces) -> Steps[None]:
