@@ -84,6 +84,7 @@ _EMPTY: Final = Struct("<ii").pack(LIST, 0)
 _READ_SMALL: Final = (LIST, LIST + STRING)
 LISTS: Final = frozenset((list, tuple, Bottle))  # what `list_blocks` encodes, with a step less
 _BYTES: Final = frozenset((bytes, bytearray, memoryview))
+_SCALARS: Final = frozenset((str, int, float, bool, bytes))
 _OWN_TEXT: Final = (list, tuple, dict, Stamp, str, int, float, bytes)
 
 
@@ -95,6 +96,8 @@ def encode(obj: Any) -> Blocks:
     kind = type(obj)
     if kind in LISTS:
         return list_blocks(obj, any_list)
+    if kind in _SCALARS:
+        return value_blocks(obj)
     to_wire = getattr(obj, "to_wire", None)
     if to_wire is not None and kind is not type:
         blocks = to_wire()

@@ -60,15 +60,16 @@ class Outlets:
     def _to(self, publisher: Publisher, shape: Shape) -> Callable[[Any], None]:
         """How a single value goes to a single middleware: what is the same for each is looked up
         once."""
-        dump, publish, source = shape.dump, publisher.publish, self._source
+        exact, dump, publish, source = shape.exact, shape.dump, publisher.publish, self._source
         number, now = self._count.__next__, time.time
 
         def send(value: Any) -> None:
-            try:
-                plain = dump(value)
-            except TypeError as error:
-                raise self._wrong(error) from None
-            publish(Item(plain, shape, number(), now(), source))
+            if type(value) is not exact:
+                try:
+                    value = dump(value)
+                except TypeError as error:
+                    raise self._wrong(error) from None
+            publish(Item(value, shape, number(), now(), source))
 
         return send
 

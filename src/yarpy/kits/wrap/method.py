@@ -245,8 +245,11 @@ class Method:
         """Arguments as plain Python. Raises TypeError for those that do not fit the signature."""
 
         def plain(name: str, value: Any) -> Any:
+            shape = self.parameters[name]
+            if type(value) is shape.exact:
+                return value
             try:
-                return self.parameters[name].dump(value)
+                return shape.dump(value)
             except TypeError as error:
                 raise TypeError(f'{self.qualname}: the argument "{name}": {error}') from error
 
@@ -258,8 +261,11 @@ class Method:
         """The arguments of a question. Raises TypeError, DecodeError."""
 
         def loaded(name: str, value: Any) -> Any:
+            shape = self.parameters[name]
+            if type(value) is shape.exact:
+                return value
             try:
-                return self.parameters[name].load(value)
+                return shape.load(value)
             except DecodeError as error:
                 raise DecodeError(f'the argument "{name}" of {self.qualname}: {error}') from error
 
@@ -273,7 +279,8 @@ class Method:
         kwargs: Mapping[str, Any],
     ) -> tuple[list[Any], dict[str, Any]]:
         """Arguments without the object, each as `turn(name, argument)`. Raises TypeError."""
-        self.read_hints()
+        if not self._read:
+            self.read_hints()
         first = () if instance is None else (instance,)
         names = self._in_order
         if names is not None and not kwargs and len(first) + len(args) == len(names):

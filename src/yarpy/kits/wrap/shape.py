@@ -25,13 +25,16 @@ from yarpy.wire.message import Message
 NOT_NATIVE: Final = object()
 _INT64: Final = 1 << 63
 _SURE: Final = frozenset((str, float, bool, bytes))  # whatever their value, they come back
+_PLAIN: Final = _SURE | {int}
 _TEXT: Final = frozenset((str,))
 
 
 class Shape:
-    """Any value: what has no hint. Only what tells its type by itself is native."""
+    """Any value: what has no hint. Only what tells its type by itself is native. `exact`: what is
+    of that type is dumped as it is."""
 
     name = "anything"
+    exact: type | None = None
 
     def dump(self, value: Any) -> Any:
         return value
@@ -58,7 +61,7 @@ class Scalar(Shape):
     """A number, a text, bytes, a bool."""
 
     def __init__(self, kind: type) -> None:
-        self.kind = kind
+        self.kind = self.exact = kind
         self.name = kind.__name__
 
     def dump(self, value: Any) -> Any:
@@ -122,10 +125,10 @@ class Several(Shape):
     def __init__(self, kind: type, item: Shape) -> None:
         self.kind, self.item = kind, item
         self.name = f"a {kind.__name__}"
-        self._same = type(item) is Shape
+        self.exact = kind if type(item) is Shape else None
 
     def dump(self, value: Any) -> Any:
-        if self._same and type(value) is self.kind:
+        if type(value) is self.exact:
             return value
         if isinstance(value, (str, bytes, dict)) or not hasattr(value, "__iter__"):
             raise TypeError(f"expected {self.name}, got {shown(value)}")
@@ -179,10 +182,10 @@ class Table(Shape):
 
     def __init__(self, key: Shape, item: Shape) -> None:
         self.key, self.item = key, item
-        self._same = type(key) is Shape and type(item) is Shape
+        self.exact = dict if type(key) is Shape and type(item) is Shape else None
 
     def dump(self, value: Any) -> Any:
-        if self._same and type(value) is dict:
+        if type(value) is self.exact:
             return value
         if not isinstance(value, Mapping):
             raise TypeError(f"expected {self.name}, got {shown(value)}")
@@ -191,7 +194,7 @@ class Table(Shape):
     def load(self, plain: Any) -> Any:
         if not isinstance(plain, dict):
             raise self._wrong(plain)
-        if self._same:
+        if self.exact is not None:
             return plain
         return {self.key.load(key): self.item.load(item) for key, item in plain.items()}
 
@@ -434,10 +437,13 @@ def _native_list(items: list[Any]) -> Any:
 
 def _native_dict(plain: Any) -> Any:
     """A dict, as what a port writes: a list of pairs, since a dict in a dict would lose its
-    kind."""
-    if not _TEXT.issuperset(map(type, plain)) or not _survive(plain.values()):
+    kind. With nothing in it that might need a description it is a Bottle, which is asked for
+    none."""
+    values = plain.values()
+    if not _TEXT.issuperset(map(type, plain)) or not _survive(values):
         return NOT_NATIVE
-    return [[key, item] for key, item in plain.items()]
+    pairs = map(list, plain.items())
+    return Bottle(pairs) if _PLAIN.issuperset(map(type, values)) else [*pairs]
 
 
 def shown(value: Any) -> str:

@@ -35,13 +35,12 @@ def native(item: Item) -> Any:
     shape = item.shape
     if type(shape) is Picture and shape.image.jpeg is not None:
         return framed(item)
-    return _spelled(shape.native(item.plain), item)
+    found = shape.native(item.plain)
+    return found if found is not NOT_NATIVE else _spelled(item)
 
 
-def _spelled(found: Any, item: Item) -> Any:
-    """The value of YARP, or of Python, that a port brings back equal; else a frame."""
-    if found is not NOT_NATIVE:
-        return found
+def _spelled(item: Item) -> Any:
+    """The value that a port brings back equal, by a description; else a frame."""
     plain = item.plain
     return plain if _is_described(plain) and _is_exact(plain, 0) else framed(item)
 
@@ -104,7 +103,8 @@ def form_of(encoding: str, shape: Shape) -> Callable[[Item], Any]:
     spelled = shape.native
 
     def form(item: Item) -> Any:
-        return _spelled(spelled(item.plain), item)
+        found = spelled(item.plain)
+        return found if found is not NOT_NATIVE else _spelled(item)
 
     return form
 
@@ -153,6 +153,15 @@ def received(message: Message, shape: Shape) -> Received:
     stamp = message.stamp
     count, time = (stamp.count, stamp.time) if stamp is not None else (None, None)
     return Received(_native(message, shape), count, time, message.source)
+
+
+def answered(message: Message, shape: Shape) -> Any:
+    """The value alone, of an answer that is no failure. Raises DecodeError."""
+    value = message.value
+    if type(value) is shape.exact:
+        return value
+    found = frame_of(message)
+    return _native(message, shape) if found is None else shape.load(found.value)
 
 
 def _native(message: Message, shape: Shape) -> Any:

@@ -17,6 +17,7 @@ import sys
 from base64 import b64decode, b64encode
 from collections.abc import Callable, Sequence
 from datetime import datetime
+from functools import cached_property
 from typing import TYPE_CHECKING, Any, Final, TypeAlias
 
 from yarpy.data import codec
@@ -196,11 +197,16 @@ class Harvester:
     a buffer is named once: a reference takes less room than what it would make a copy of."""
 
     def __init__(self, buffers: Sequence[NDArray[Any]] = ()) -> None:
-        most = limits()
         self._buffers = buffers
         self._named: set[int] = set()
-        self._pixels = Quota(most.picture, "bytes of pixels (YARPY_MAX_PICTURE)")
-        self._elements = Quota(most.elements, "elements (YARPY_MAX_ELEMENTS)")
+
+    @cached_property
+    def _pixels(self) -> Quota:
+        return Quota(limits().picture, "bytes of pixels (YARPY_MAX_PICTURE)")
+
+    @cached_property
+    def _elements(self) -> Quota:
+        return Quota(limits().elements, "elements (YARPY_MAX_ELEMENTS)")
 
     def value(self, tree: Any) -> Any:
         """The value of a tree. Raises as `untag`."""

@@ -18,6 +18,7 @@ from yarpy.kits.wrap.port_end import PortEnd
 from yarpy.kits.wrap.shape import Shape
 from yarpy.kits.wrap.spelling import (
     FORMS,
+    answered,
     failure,
     failure_of,
     form_of,
@@ -178,7 +179,7 @@ class PortClient:
         failed = failure_of(message)
         if failed is not None:
             raise failed.error()
-        return received(message, self._shape).value
+        return answered(message, self._shape)
 
     def _client(self, deadline: float | None) -> RpcClient:
         """A connection to the server; with time left, one that is not there yet is waited for."""

@@ -90,7 +90,10 @@ class Record:
         _records.append(self)
 
     def find(self, obj: Any) -> Instance | None:
-        return next((one for one in self.instances if one.id == id(obj)), None)
+        for one in self.instances:
+            if one.id == id(obj):
+                return one
+        return None
 
     def activate(self, obj: Any, mode: Any) -> None:
         """Choose a mode; what was open in another one is closed."""

@@ -8,6 +8,8 @@ from __future__ import annotations
 
 import json
 import os
+from collections.abc import Callable
+from functools import cached_property
 from typing import Any
 
 import numpy as np
@@ -29,15 +31,25 @@ class Native:
             if name.startswith(("load_", "map_")) and value is not None
         }
 
+    @cached_property
+    def _encode(self) -> Callable[[Any], str]:
+        return JsonEncoder(**self._plugins, **self._encoder).encode
+
+    @cached_property
+    def _decode(self) -> Callable[[str], Any]:
+        hook = JsonDecodeHook(**self._plugins).object_hook
+        return json.JSONDecoder(object_hook=hook, **self._decoder).decode
+
     def text(self, value: Any) -> str:
         """The JSON of a value. Raises TypeError for what it cannot hold."""
-        return json.dumps(value, cls=JsonEncoder, **self._plugins, **self._encoder)
+        return self._encode(value)
 
     def of_text(self, text: str | bytes) -> Any:
         """The value of a text. Raises ValueError."""
-        hook = JsonDecodeHook(**self._plugins).object_hook
+        if not isinstance(text, str):
+            text = text.decode(json.detect_encoding(text), "surrogatepass")
         try:
-            return json.loads(text, object_hook=hook, **self._decoder)
+            return self._decode(text)
         except (TypeError, LookupError, AttributeError, RecursionError, OverflowError) as error:
             raise yarpy.DecodeError(f"a text with tags that do not fit: {error}") from error
 

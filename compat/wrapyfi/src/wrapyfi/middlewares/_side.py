@@ -276,7 +276,7 @@ class _Asking(Client):
         if not self.established:
             self.establish()
         client = self._client
-        if not _awaited(client, lambda: self._client is client):
+        if not (client.wait(0.0) or _awaited(client, lambda: self._client is client)):
             raise yarpy.Timeout(f'nobody serves "{self.in_topic}"')
         return self.form.value(client.ask(spelled, patience()))
 

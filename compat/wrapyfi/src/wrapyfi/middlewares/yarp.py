@@ -13,13 +13,15 @@ import logging
 import random
 import time
 from base64 import b64decode, b64encode
+from collections.abc import Callable
+from functools import partial
 from typing import Any
 
 import numpy as np
 
 import yarpy
 from wrapyfi.middlewares._form import Native, Picture, Sound
-from wrapyfi.middlewares._side import SKIP, Desk, Medium, Nothing, offer
+from wrapyfi.middlewares._side import SKIP, Medium, Nothing, offer
 from yarpy.kits.wrap.follower import Follower
 from yarpy.kits.wrap.middleware import Failure
 from yarpy.kits.wrap.npy import from_npy, to_npy
@@ -198,18 +200,27 @@ class _SoundAnswer(_NativeForm):
         return samples, rate
 
 
-class _Serving(Desk):
-    def __init__(self, side: Any) -> None:
-        super().__init__(side.out_topic)
-        self._port = yarpy.RpcServer(side.out_topic, self._handle, timeout=OPENING)
+class _Serving:
+    """A port that the program's thread reads itself, and so answers without another one."""
 
-    def _handle(self, message: yarpy.Message) -> Any:
-        found = self.ask(message)
-        return failure(found) if isinstance(found, Failure) else found
+    def __init__(self, side: Any) -> None:
+        self._port = yarpy.Port(side.out_topic, timeout=OPENING)
+
+    def take(self) -> tuple[yarpy.Message, Callable[[Any], None]]:
+        message = self._port.read()
+        return message, partial(_give, message)
 
     def close(self) -> None:
-        super().close()
         self._port.close()
+
+
+def _give(message: yarpy.Message, found: Any) -> None:
+    """Answer; nobody is to be told where the client has left, or wants no answer."""
+    if message.answer is not None:
+        try:
+            message.reply(failure(found) if isinstance(found, Failure) else found)
+        except (yarpy.LinkClosed, yarpy.LocalProtocolError):
+            pass
 
 
 class _Asking:

@@ -26,7 +26,7 @@ class JsonEncoder(json.JSONEncoder):
         super().__init__(**kwargs)
 
     def encode(self, o: Any) -> str:
-        return super().encode(_Planter(self._options).plant(o))
+        return "".join(self.iterencode(o, True))
 
     def iterencode(self, o: Any, _one_shot: bool = False) -> Any:
         return super().iterencode(_Planter(self._options).plant(o), _one_shot)
