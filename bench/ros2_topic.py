@@ -24,7 +24,7 @@ import yarpy
 from yarpy.names.default import DEFAULT
 from yarpy.peers import ros2
 from yarpy.peers.ros2.kind import key_of
-from yarpy.peers.ros2.zenoh.attachment import Attachment
+from yarpy.peers.ros2.zenoh.attachment import attachment
 from yarpy.peers.zenoh.router import open_router
 from yarpy.peers.zenoh.transport import close, share
 
@@ -59,7 +59,7 @@ def bare(what: str, answers: bool) -> Iterator[Callable[[], None]]:
 
     out, into = ("back", "there") if answers else ("there", "back")
     come = threading.Semaphore(0)
-    body, attached = body_of(what), bytes(Attachment(1, 1, bytes(16)))
+    body, attached = body_of(what), attachment(1, 1, bytes(16))
     with share() as shared:
         publisher = shared.session.declare_publisher(key(out, what))
 
@@ -145,7 +145,7 @@ def flood() -> None:
     """How many small messages a second leave, and arrive, in this program."""
     from zenoh.handlers import Callback
 
-    body, attached = body_of("text"), bytes(Attachment(1, 1, bytes(16)))
+    body, attached = body_of("text"), attachment(1, 1, bytes(16))
     with share() as shared:
         count = 0
 

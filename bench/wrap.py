@@ -1,9 +1,11 @@
-"""Decorated methods beside what they stand for: a plain call, a bare `port.write`, Wrapyfi's JSON.
+"""Decorated methods beside what they stand for: a plain call, a bare `port.write`, a bare question,
+Wrapyfi's JSON.
 
 The reader is a program of its own; the contenders take turns, so that a busy machine is as unkind
 to each. A ratio compares medians of the same round, and the middle one of these counts. A decorated
 method stamps what it sends, so a bare write with a stamp is beside it, too. `paced` waits 2 ms
-before each, as a control loop does; the others follow each other.
+before each, as a control loop does; the others follow each other. Questions are of one number, to
+an `RpcServer`, to a method that `wrap` serves, and to one of a program for Wrapyfi.
 
     python bench/wrap.py [--rounds 30]
 """
@@ -18,6 +20,7 @@ import sys
 import time
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -39,6 +42,42 @@ print("ready", flush=True)
 sys.stdin.read()
 for port in ports:
     port.close()
+"""
+
+
+DROP_IN = str(Path(__file__).resolve().parent.parent / "compat" / "wrapyfi" / "src")
+ADDERS = f"""
+import contextlib, sys
+sys.path.insert(0, {DROP_IN!r})
+import yarpy
+from wrapyfi.connect.wrapper import MiddlewareCommunicator
+from yarpy.kits import wrap
+
+class Kit:
+    @wrap.on("/kit")
+    def add(self, number: float) -> float:
+        return number + 1
+
+class DropIn(MiddlewareCommunicator):
+    @MiddlewareCommunicator.register("NativeObject", "yarp", "DropIn", "/dropin", carrier="tcp")
+    def add(self, number):
+        return (number + 1,)
+"""
+SERVER = f"""{ADDERS}
+import threading
+
+def serve(method):
+    with contextlib.suppress(yarpy.PortClosed):
+        while True:
+            method(0.0)
+
+kit, drop_in = Kit(), DropIn()
+drop_in.activate_communication("add", "reply")
+with yarpy.RpcServer("/native", lambda message: message.value[0] + 1), wrap.serve(kit.add):
+    threading.Thread(target=serve, args=(drop_in.add,), daemon=True).start()
+    print("ready", flush=True)
+    sys.stdin.read()
+    drop_in.close()
 """
 
 
@@ -119,9 +158,36 @@ def stamped(port: yarpy.BufferedPort, value: Any) -> Callable[[], object]:
     return lambda: port.write(value, yarpy.Stamp(next(count), time.time()))
 
 
+def asking(rounds: int) -> dict[str, float]:
+    """Questions to another program."""
+    parts: dict[str, Any] = {}
+    exec(ADDERS, parts)  # the same classes here
+    with yarpy.NameServer() as server:
+        pipe = subprocess.PIPE
+        with subprocess.Popen(
+            [sys.executable, "-c", SERVER], env=server.environment, stdin=pipe, stdout=pipe
+        ) as process:
+            assert process.stdin is not None and process.stdout is not None
+            process.stdout.readline()
+            kit, drop_in = parts["Kit"](), parts["DropIn"]()
+            drop_in.activate_communication("add", "request")
+            with yarpy.RpcClient("/native") as client, wrap.call(kit.add):
+                acts: dict[str, Callable[[], object]] = {
+                    "ask native": lambda: client.call(3.0),
+                    "ask by wrap.call": lambda: kit.add(3.0),
+                    "ask as Wrapyfi": lambda: drop_in.add(3.0),
+                }
+                for act in acts.values():
+                    act()  # connects
+                found = medians(acts, 100, rounds)
+            drop_in.close()
+            process.stdin.close()
+    return found
+
+
 def measure(rounds: int) -> dict[str, float]:
     """Every number: microseconds, and ratios."""
-    found = {}
+    found = asking(rounds)
     arm = Arm(SMALL)
     calls = {"call plain": arm.plain, "call decorated, no mode": arm.small}
     found |= medians(calls, 20_000, rounds)

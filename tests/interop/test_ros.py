@@ -8,6 +8,7 @@ import sys
 
 import pytest
 from support.cpp import CppYarp
+from support.process import Process
 from support.ros_graph import ros_graph
 from support.wait import HANG, wait_until
 
@@ -96,3 +97,55 @@ def test_a_stopped_subscriber_holds_up_nobody(tmp_path_factory: pytest.TempPathF
                 assert min(behind) == 0 and max(behind) > 0
             finally:
                 program.kill()
+
+
+AGAIN = """
+import sys, time, yarpy
+from yarpy.peers.ros.node import Node
+
+node = Node("/again")
+node.publisher("/map", "std_msgs/String", latch=True).write(sys.argv[1])
+node.service("/who", "std_srvs/Trigger", lambda asked: [True, sys.argv[1]])
+print("open", flush=True)
+time.sleep(60)
+"""
+ROSPY = """
+import rospy, sys
+from std_msgs.msg import String
+from std_srvs.srv import Trigger
+rospy.init_node("keeper", disable_signals=True)
+rospy.Subscriber("/map", String, lambda m: print("map", m.data, flush=True))
+rospy.wait_for_service("/who")
+proxy = rospy.ServiceProxy("/who", Trigger)
+for line in sys.stdin:
+    try:
+        print("answer", proxy().message, flush=True)
+    except Exception:  # rospy lets those of its sockets through
+        print("no answer", flush=True)
+"""
+
+
+@pytest.mark.peer("ros", "rosmaster")
+def test_a_node_that_was_killed_is_found_again_by_rospy(
+    tmp_path_factory: pytest.TempPathFactory,
+) -> None:
+    """Its program takes nothing back at the master, and has its name again."""
+    with ros_graph(tmp_path_factory.mktemp("ros")) as graph:
+        environment = {**os.environ, "ROS_MASTER_URI": graph.uri, "ROS_IP": "127.0.0.1"}
+
+        def node(word: str) -> Process:
+            return Process([sys.executable, "-c", AGAIN, word], env=environment)
+
+        def answers(word: str) -> bool:
+            keeper.write_line("?")
+            return f"answer {word}\n" in keeper.stdout
+
+        with node("first") as first, graph.python(ROSPY) as keeper:
+            first.wait_line("open")
+            keeper.wait_line("map first")
+            wait_until(lambda: answers("first"), HANG, "the first one answers")
+            first.kill()
+            with node("second") as second:
+                second.wait_line("open")
+                keeper.wait_line("map second")
+                wait_until(lambda: answers("second"), HANG, "the second one answers")

@@ -24,6 +24,7 @@ class Inbox(ObjectTransport):
     """The half of an endpoint that all have in common. `dropped` counts what was lost."""
 
     name = ""
+    clock: Callable[[], float] = staticmethod(time.time)  # in seconds
 
     def __init__(self) -> None:
         self.dropped = 0
@@ -33,11 +34,6 @@ class Inbox(ObjectTransport):
         self._over = False
         self._counting = threading.RLock()
         self._timeout: float | None = None
-
-    @property
-    def clock(self) -> Callable[[], float]:
-        """The time, in seconds."""
-        return time.time
 
     @property
     def waiting(self) -> int:

@@ -114,8 +114,14 @@ def test_what_leaves_later_has_memory_of_its_own() -> None:
 
 def test_subscribing() -> None:
     carrier, end = opened("ros2+sub", Chatter())
+    assert isinstance(end.stream, ObjectStream)
     message = read(carrier, end, Incoming(HI, 3, 1_500_000_000))
     assert (message.key, message.value, message.envelope) == (DATA, "hi", "3 1.500000000")
+    assert carrier.parse(end.stream) is None
+    for number in (4, 5):
+        end.stream.feed_object(Incoming(HI, number, 1_500_000_000))
+    found = [carrier.parse(end.stream) for _ in range(3)]
+    assert [one and one.envelope for one in found] == ["4 1.500000000", "5 1.500000000", None]
     end.stream.feed_eof()
     with pytest.raises(LinkClosed):
         end.begin(carrier.decode(end.stream))

@@ -56,7 +56,10 @@ class RosMessage(Message):
         """An Image, a list of the fields, or the only field, as of any other message."""
         from yarpy.peers.ros.message.native import to_value
 
-        found = to_value(self.ros)
+        names, ros = self.kind._names, self.ros
+        if len(names) == 1 and type(text := getattr(ros, names[0])) is str:
+            return text  # as below, and as usual
+        found = to_value(ros)
         alone = isinstance(found, Bottle) and len(found) == 1 and isinstance(found[0], SCALARS)
         return found[0] if alone else found
 
@@ -153,7 +156,7 @@ def _takes_blob(kind: type[Ros]) -> bool:
 def has_header(kind: type[Ros]) -> bool:
     """Return whether messages of the type begin with number and time."""
     fields = kind._definition.struct.fields
-    return bool(fields) and str(fields[0].type) == _HEADER
+    return bool(fields) and getattr(fields[0].type, "name", "") == _HEADER
 
 
 def envelope_of(body: Buffer) -> str:

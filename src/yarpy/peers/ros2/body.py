@@ -37,10 +37,10 @@ def encode_body(
 
     Raises TypeError, ValueError or OverflowError for what is nothing of that type.
     """
-    key = "ros2", kind
-    found = packet.forms.get(key)
+    key, forms = ("ros2", kind), packet.forms
+    found: tuple[Buffer, ...] | None = forms.get(key)
     if found is None:
-        found = packet.forms[key] = _encode(packet, kind, now)
+        found = forms[key] = _encode(packet, kind, now)
     return found
 
 

@@ -136,7 +136,8 @@ class Ros2(Hosted):
             self.lost += 1
             return
         self._told = ""
-        self.write_object(stream, Outgoing(kind, body, time_of(packet)))
+        when = time_of(packet) if packet.envelope else 0
+        self.write_object(stream, Outgoing(kind, body, when))
 
     def _body(self, packet: Packet) -> tuple[Any, tuple[Buffer, ...]]:
         topic = self.topic
@@ -157,9 +158,17 @@ class Subscriber(Ros2):
 
     push = False
 
+    def parse(self, stream: ByteStream) -> Message | None:
+        came = self.come(stream)
+        return None if came is None else self._message(came)
+
     def decode(self, stream: ByteStream) -> Steps[Message]:
-        came = yield from self.read_object(stream)
-        kind = self.kind
+        return self._message((yield from self.read_object(stream)))
+
+    def _message(self, came: Incoming) -> Message:
+        topic = self.topic
+        assert topic is not None
+        kind = topic.kind
         return message_of(DATA, came.body, kind, has_header(kind), came.number, came.time)
 
 

@@ -28,6 +28,7 @@ from collections.abc import Sequence
 from typing import Final, Protocol
 
 from yarpy.peers.zenoh.alarm import CLOCK
+from yarpy.peers.zenoh.spare import Spare
 from yarpy.transports.base import Address, Answerable
 from yarpy.wire.stream import Buffer
 
@@ -35,8 +36,6 @@ DATA, END, WAKE, CREDIT, CLOSED, RESET = range(6)
 WINDOW: Final = 1 << 23  # bytes on their way to a reader
 MESSAGES: Final = 1024
 FRAGMENT: Final = 1 << 21  # bytes of one message of Zenoh
-LARGE: Final = 1 << 16  # bytes of a message from which on its memory is kept for the next
-POOLED: Final = 2  # such messages of different sizes: of one in pieces, the first and the last
 CREDIT_INTERVAL: Final = 0.1  # seconds until a reader says what it has taken, if not a quarter
 RESET_RESEND: Final = 5.0  # seconds after which the other end is told once more of the end
 REORDER_TIMEOUT: Final = 2.0  # seconds in which messages may overtake each other
@@ -120,7 +119,7 @@ class ZenohPipe(Answerable):
         # What goes.
         self._number = 0
         self._sent = 0  # bytes
-        self._spare: dict[int, bytearray] = {}  # size -> memory of a large message
+        self._spare = Spare()
         self._confirmed = self._confirmed_number = 0  # what the other end has taken
         self._changed = threading.Condition()  # of credit, and of the pipe's end
         self._sending = threading.RLock()  # messages leave in the order of their numbers
@@ -379,32 +378,15 @@ class ZenohPipe(Answerable):
 
     def _go(self, size: int, pieces: Sequence[Buffer]) -> None:
         """Send a message of so many bytes."""
-        head = _pack(DATA, self._number)
-        small = size < LARGE
-        data = b"".join((head, *pieces)) if small else self._joined(head, size, pieces)
+        data = self._spare.join((_pack(DATA, self._number), *pieces))
         self._number = (self._number + 1) % _ALL
         self._sent += size
         try:
             self._line.put(data)
+            self._spare.give_back(data)
         except Exception as error:
             self.break_off("the session with Zenoh is closed")
             raise BrokenPipeError(self._broken) from error
-
-    def _joined(self, head: bytes, size: int, pieces: Sequence[Buffer]) -> bytearray:
-        """A large message, in memory that was used for those before it: fresh memory of that size
-        costs several times as much as copying does."""
-        data = self._spare.get(size)
-        if data is None:
-            if len(self._spare) == POOLED:
-                self._spare.clear()
-            data = self._spare[size] = bytearray(_SIZE + size)
-        with memoryview(data) as view:
-            view[:_SIZE] = head
-            end = _SIZE
-            for piece in pieces:
-                begin, end = end, end + len(piece)
-                view[begin:end] = piece
-        return data
 
     def _wait_for_room(self, deadline: float | None) -> None:
         with self._changed:

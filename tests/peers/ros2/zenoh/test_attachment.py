@@ -6,7 +6,7 @@ from hypothesis import strategies as st
 from zenoh import ext
 
 from yarpy.errors import DecodeError
-from yarpy.peers.ros2.zenoh.attachment import SIZE, Attachment, parse_attachment
+from yarpy.peers.ros2.zenoh.attachment import SIZE, Attachment, attachment, parse_attachment
 
 GID = bytes.fromhex("f15f21d2fafc22891bb0db868309bfcb")
 
@@ -14,7 +14,7 @@ GID = bytes.fromhex("f15f21d2fafc22891bb0db868309bfcb")
 def test_golden_bytes() -> None:
     """As `zenoh.ext` spells (Int64, Int64, bytes), which the RMW uses."""
     when = 1_700_000_000_123_456_789
-    data = bytes(Attachment(1, when, GID))
+    data = attachment(1, when, GID)
     assert data.hex() == "0100000000000000" + "15cd853dfe9c9717" + "10" + GID.hex()
     assert data == bytes(ext.z_serialize((ext.Int64(1), ext.Int64(when), GID)))
     assert len(data) == SIZE == 33

@@ -20,7 +20,7 @@ import yarpy
 from yarpy.peers import ros2
 from yarpy.peers.ros2.key import Key
 from yarpy.peers.ros2.kind import key_of
-from yarpy.peers.ros2.zenoh.attachment import Attachment
+from yarpy.peers.ros2.zenoh.attachment import attachment
 from yarpy.peers.ros2.zenoh.participant import Participant, take_part
 from yarpy.peers.zenoh.transport import share
 
@@ -224,7 +224,7 @@ def test_everything_is_taken_back(part: Participant) -> None:
 def test_messages_that_are_none(part: Participant, caplog: pytest.LogCaptureFixture) -> None:
     key = str(key_of(0, "/bad", String, False))
     good = b"".join(String(data="good").to_ros())
-    attached = bytes(Attachment(1, 1, bytes(16)))
+    attached = attachment(1, 1, bytes(16))
     with yarpy.BufferedPort("/in", strict=True) as reader, share() as shared:
         reader.listen_to("ros2://bad~std_msgs/msg/String")
         with caplog.at_level(logging.WARNING, logger="yarpy"):
@@ -246,7 +246,7 @@ def test_lost_messages_are_counted(part: Participant) -> None:
     with yarpy.BufferedPort("/in", strict=True) as reader, share() as shared:
         reader.listen_to("ros2://gaps~std_msgs/msg/String")
         for number in (3, 4, 9):
-            shared.session.put(key, body, attachment=bytes(Attachment(number, 1, bytes(16))))
+            shared.session.put(key, body, attachment=attachment(number, 1, bytes(16)))
         for _ in range(3):
             reader.read(timeout=HANG)
         assert reader.stats.inputs[0].drops == 4
@@ -255,7 +255,7 @@ def test_lost_messages_are_counted(part: Participant) -> None:
 def test_questions_that_are_none(part: Participant) -> None:
     service = ros2.load(ADD)
     key: Key = key_of(0, "/ask", service, False)
-    attached = bytes(Attachment(1, 1, bytes(16)))
+    attached = attachment(1, 1, bytes(16))
 
     def ask(payload: bytes, attachment: bytes | None) -> bytes:
         with share() as shared:

@@ -39,7 +39,11 @@ class _Planter(Planter):
 
     def plant(self, value: Any, depth: int = 0) -> Any:
         kind = type(value)
-        plugin = PluginRegistrar.nearest(kind) if PluginRegistrar.encoder_registry else None
+        plugin = None
+        if PluginRegistrar.encoder_registry:
+            plugin = PluginRegistrar.nearest(kind)
+        elif kind in PLAIN:
+            return value
         if plugin is None and kind not in _BUILT_IN:
             plugin = for_type(kind)
         if plugin is not None:
@@ -63,6 +67,8 @@ class JsonDecodeHook:
     def object_hook(self, obj: Any) -> Any:
         """A dict with a tag as what it stands for."""
         content = obj.get(TAG) if isinstance(obj, dict) else None
+        if content is None:
+            return obj
         if isinstance(content, list) and content:
             plugin = PluginRegistrar.decoder_registry.get(str(content[0])) or for_tag(content[0])
             if plugin is not None:

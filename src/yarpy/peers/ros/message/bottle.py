@@ -201,4 +201,4 @@ def _number(kind: Primitive, item: Any, path: str) -> Any:
 def _is_list(item: Any) -> bool:
     if isinstance(item, (str, bytes, bytearray, memoryview)):
         return False
-    return isinstance(item, Sequence) or hasattr(item, "__array_interface__")
+    return isinstance(item, (list, tuple, Sequence)) or hasattr(item, "__array_interface__")

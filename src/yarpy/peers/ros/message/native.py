@@ -85,6 +85,8 @@ def to_message(
     """
     if isinstance(value, cls):
         return value
+    if isinstance(value, (str, dict)):
+        return cls.from_bottle(value)
     name = cls._type
     if isinstance(value, Image) and name == "sensor_msgs/Image":
         return image_message(value, cls, _header(cls, stamp, frame_id))
@@ -104,7 +106,7 @@ def to_message(
         return _filled(cls, value, frame_id)
     if isinstance(value, Message):
         raise TypeError(f"a {value._type} is no {name}")
-    if isinstance(value, (list, tuple, dict, str, int, float, Vector)) or value is None:
+    if isinstance(value, (list, tuple, int, float, Vector)) or value is None:
         return cls.from_bottle([] if value is None else value)
     return cls.from_bottle(codec.decode(b"".join(codec.encode(value))))
 

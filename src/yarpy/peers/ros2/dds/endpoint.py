@@ -3,7 +3,8 @@
 Rules: whoever promises less than the other side asks for is not connected. Where no QoS is said, a
 subscriber asks for what all publishers promise, looked at again when one comes or goes, and a
 publisher promises what anybody asks for; where one is said, the log names whom it keeps out. What
-comes faster than it is read is counted, and so is what the network loses.
+comes faster than it is read is counted, and so is what the network loses. Who comes and goes is
+told by the participant's `pump`: a message costs no look at that.
 """
 
 from __future__ import annotations
@@ -12,6 +13,7 @@ import contextlib
 import threading
 import time
 from collections import deque
+from collections.abc import Callable
 from typing import Any, Final
 
 from yarpy.errors import LocalProtocolError, UnknownName, UnknownType
@@ -115,7 +117,13 @@ class DdsEndpoint(Inbox):
         raise NotImplementedError
 
     def _show(self, made: Any) -> Any:
-        """Tell that a reader or writer is our node's."""
+        """Tell that a reader or writer is our node's, and hear what becomes of its promises."""
+
+        def take() -> Callable[[], None]:
+            found = made.take_status(self._news)
+            return lambda: self._act(made, found)
+
+        self._part.pump.add(made, take)
         self._shown.append(made)
         half = "readers" if self.role == SUBSCRIBER else "writers"
         self._part.discovery.add(self.node, **{half: (made,)})
@@ -123,22 +131,21 @@ class DdsEndpoint(Inbox):
 
     def _delete(self, entity: Any) -> None:
         """Delete a reader or writer."""
+        self._part.pump.remove(entity)
         self._shown.remove(entity)
         self._part.discovery.remove(self.node, entity)
         delete(entity)
 
-    def _changed(self) -> int:
-        """Which of the statuses there are, since it was asked last."""
-        if self._entity is None or self._over:
-            return 0
-        try:
-            found: int = self._entity.take_status(self._news)
-        except self._failure:
-            if not self._over:  # another thread has closed it
-                raise
-            return 0
-        self._note(self._entity, found)
-        return found
+    def _act(self, made: Any, found: int) -> None:
+        """Act upon the statuses that a reader or writer has got. In the thread of the pump."""
+        with self._opening:
+            if not self._over:
+                self._note(made, found)
+                self._meet(found)
+
+    def _meet(self, found: int) -> None:
+        """Fit those who have come or gone, as these statuses say."""
+        raise NotImplementedError
 
     def _note(self, entity: Any, found: int) -> None:
         """Tell of what the statuses of a reader or writer say."""
@@ -153,7 +160,8 @@ class DdsEndpoint(Inbox):
                     *(self.port_name, self.name, event.policy or "of something", self.qos),
                 )
             elif event.kind == MESSAGE:
-                self.dropped += event.times
+                with self._counting:
+                    self.dropped += event.times
             self.events.tell(event)
 
     def close(self) -> None:
@@ -162,10 +170,15 @@ class DdsEndpoint(Inbox):
             if self._closed:  # an interrupted one is not
                 return
             self._closed = True
+        for item in self._shown:
+            self._part.pump.remove(item)
         self._part.discovery.remove(self.node, *self._shown)
         for item in self._owned:
             delete(item)
         POOL.leave(self._part)
+
+    def ended(self) -> bool:
+        return self._over
 
 
 class DdsPublisher(DdsEndpoint):
@@ -186,28 +199,24 @@ class DdsPublisher(DdsEndpoint):
 
     def give(self, item: Outgoing) -> None:
         sample = self._class.__new__(self._class)
-        sample.body = b"".join(item.body)
-        self.look()
+        body = item.body
+        sample.body = body[0] if len(body) == 1 else b"".join(body)
         if self._next is not None and time.monotonic() >= self._due:
             self._take_over()
         self._entity.write(sample, item.time or time.time_ns())
 
-    def look(self) -> None:
+    def _meet(self, found: int) -> None:
         """Promise more if somebody asks for it: to those who are there the present writer goes on
         until they can have heard of the new one, so that each message comes once."""
-        self._grow(self._changed())
-
-    def _grow(self, found: int) -> None:
         if not found & self._refusal or self._given or self._next is not None:
             return
-        with self._opening:
-            wanted = self._fitting()
-            if self._over or not wanted.latched or self.qos.latched:
-                return
-            self.qos = wanted
-            self._next = self._show(self._made())
-            self._owned = (self._next, *self._owned)
-            self._due = time.monotonic() + CHANGING
+        wanted = self._fitting()
+        if not wanted.latched or self.qos.latched:
+            return
+        self.qos = wanted
+        made = self._show(self._made())
+        self._owned = (made, *self._owned)
+        self._due, self._next = time.monotonic() + CHANGING, made
 
     def _take_over(self) -> None:
         with self._opening:
@@ -216,11 +225,6 @@ class DdsPublisher(DdsEndpoint):
             before, self._entity, self._next = self._entity, self._next, None
             self._owned = tuple(item for item in self._owned if item is not before)
         self._delete(before)  # once all has been confirmed, or a second later
-
-    def ended(self) -> bool:
-        if not self._over:
-            self.look()
-        return self._over
 
 
 class DdsSubscriber(DdsEndpoint):
@@ -231,6 +235,8 @@ class DdsSubscriber(DdsEndpoint):
         self._waiting: Any = None
         self._bell: Any = None  # wakes who waits
         self._come: deque[Incoming] = deque()
+        self._changed = False  # who publishes
+        self._conditions: dict[int, Any] = {}  # that something has come, by the reader's id
         self._before: Any = None  # the reader that another has taken over from, for a moment
         self._due = 0.0  # ... and until when
         self._repeats = False  # whether the present one may hear what the other one had
@@ -240,9 +246,17 @@ class DdsSubscriber(DdsEndpoint):
         super()._open(kind)
         self._waiting = load().WaitSet(self._part.dds)
         self._bell = load().GuardCondition(self._part.dds)
-        self._waiting.attach(self._entity)
         self._waiting.attach(self._bell)
+        self._listen(self._entity)
         self._owned = (self._waiting, self._bell, *self._owned)
+
+    def _listen(self, reader: Any) -> None:
+        """Wait for what comes to a reader, too."""
+        core = load()
+        anything = core.SampleState.Any | core.ViewState.Any | core.InstanceState.Any
+        condition = self._conditions[id(reader)] = core.ReadCondition(reader, anything)
+        self._owned = (condition, *self._owned)
+        self._waiting.attach(condition)
 
     def _made(self) -> Any:
         from cyclonedds import sub
@@ -256,7 +270,7 @@ class DdsSubscriber(DdsEndpoint):
             self._topic,
             qos=dds_qos(self.qos, hash_of(self.kind), ROOM, writes=False),
         )
-        made.set_status_mask(status.DataAvailable | self._news)
+        made.set_status_mask(self._news)
         return made
 
     def receive(self, wait: bool = True) -> tuple[object] | None:
@@ -264,44 +278,59 @@ class DdsSubscriber(DdsEndpoint):
             return super().receive(wait)
         try:
             while not self._over:
-                if self._changed() & self._fits and not self._given:
+                waited = wait and not self._come
+                found = self._wait() if waited else 1
+                if self._changed:
                     self._adapt()
                 self._take_all()
                 if self._come:
                     return (self._come.popleft(),)
-                if not wait:
-                    raise BlockingIOError("nothing has come")
-                limit = _LONG if self._timeout is None else self._timeout
-                if self._before is not None:
-                    limit = min(limit, CHANGING)
-                found = self._waiting.wait(int(limit * 1e9))
-                if not found and self._timeout is not None and self._before is None:
+                if not (waited and (found or self._timeout is None or self._before is not None)):
                     raise BlockingIOError("nothing has come")
         except self._failure as error:
             if not self._over:
                 raise BrokenPipeError(f"DDS says: {error}") from error
         return None
 
+    def _wait(self) -> int:
+        """Wait until something has come or changed; 0 if neither has, for as long as one waits."""
+        limit = _LONG if self._timeout is None else self._timeout
+        if self._before is not None:
+            limit = min(limit, CHANGING)
+        found: int = self._waiting.wait(int(limit * 1e9))
+        return found
+
+    def _meet(self, found: int) -> None:
+        if found & self._fits and not self._given:
+            self._changed = True
+            self._bell.set(True)
+
     def _adapt(self) -> None:
         """Read as the present publishers let us. A reader cannot change, so another takes over;
         both read until it knows them all, and what both have is taken once."""
         with self._opening:
+            if self._over:  # which the bell tells, too
+                return
+            self._bell.set(False)
+            self._changed = False
             wanted = self._fitting()
-            if self._over or wanted == self.qos:
+            if wanted == self.qos:
                 return
             log.info("%s: %s is read as %s from now on", self.port_name, self.name, wanted)
             self.qos = wanted
             self._retire()
             self._before, self._entity = self._entity, self._show(self._made())
-            self._waiting.attach(self._entity)
-            self._due, self._repeats = time.monotonic() + CHANGING, True
             self._owned = (self._entity, *self._owned)
+            self._listen(self._entity)
+            self._due, self._repeats = time.monotonic() + CHANGING, True
 
     def _retire(self) -> None:
         before, self._before = self._before, None
         if before is not None:
-            self._waiting.detach(before)
-            self._owned = tuple(item for item in self._owned if item is not before)
+            condition = self._conditions.pop(id(before))
+            self._waiting.detach(condition)
+            delete(condition)
+            self._owned = tuple(i for i in self._owned if i is not before and i is not condition)
             self._delete(before)
 
     def _take_all(self) -> None:
@@ -316,7 +345,8 @@ class DdsSubscriber(DdsEndpoint):
         most = self.qos.kept
         while len(self._come) > most:
             self._come.popleft()
-            self.dropped += 1
+            with self._counting:  # the network's losses are counted in another thread
+                self.dropped += 1
 
     def _take(self, reader: Any) -> None:
         for sample in reader.take(N=ROOM):
@@ -338,9 +368,6 @@ class DdsSubscriber(DdsEndpoint):
         if self._bell is not None:
             with contextlib.suppress(self._failure):  # it has been closed
                 self._bell.set(True)
-
-    def ended(self) -> bool:
-        return self._over
 
 
 def _ask(token: Token, name: str, kind: str) -> Any:

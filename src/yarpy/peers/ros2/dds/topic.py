@@ -39,24 +39,6 @@ class DdsWriter(DdsPublisher):
         self._writing = threading.Lock()  # one writer may take over from another
         begun(self, type_)
 
-    def _show(self, made: Any) -> Any:
-        def take() -> Callable[[], None]:
-            found = made.take_status(self._news)
-            return lambda: self._act(made, found)
-
-        self._part.pump.add(made, take)
-        return super()._show(made)
-
-    def _act(self, made: Any, found: int) -> None:
-        with self._opening:
-            if not self._over:
-                self._note(made, found)
-                self._grow(found)
-
-    def _delete(self, entity: Any) -> None:
-        self._part.pump.remove(entity)
-        super()._delete(entity)
-
     def write(self, value: object) -> None:
         """Send a value to all who subscribe. A header without a time gets the present one. Raises
         TypeError, ValueError, DecodeError for what is nothing of the type."""
@@ -68,8 +50,6 @@ class DdsWriter(DdsPublisher):
     def close(self) -> None:
         """Idempotent."""
         with self._writing:
-            for item in self._shown:
-                self._part.pump.remove(item)
             super().close()
 
 

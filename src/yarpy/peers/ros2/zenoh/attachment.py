@@ -25,8 +25,10 @@ class Attachment(NamedTuple):
     time: int
     gid: bytes
 
-    def __bytes__(self) -> bytes:
-        return _LAYOUT.pack(self.number, self.time, GID_SIZE, self.gid)
+
+def attachment(number: int, time: int, gid: bytes) -> bytes:
+    """Return the bytes of an attachment."""
+    return _LAYOUT.pack(number, time, GID_SIZE, gid)
 
 
 def parse_attachment(data: bytes) -> Attachment:

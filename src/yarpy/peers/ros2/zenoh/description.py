@@ -16,7 +16,7 @@ from yarpy.peers.ros2.message.description import SERVICE, type_of
 from yarpy.peers.ros2.message.hash import full_name
 from yarpy.peers.ros2.message.library import default_library
 from yarpy.peers.ros2.token import Token, gid
-from yarpy.peers.ros2.zenoh.attachment import Attachment
+from yarpy.peers.ros2.zenoh.attachment import attachment
 from yarpy.peers.ros2.zenoh.participant import Participant
 
 TIMEOUT: Final = 3.0  # seconds for an answer
@@ -46,7 +46,7 @@ def describe(participant: Participant, token: Token, name: str, kind: str) -> An
         Callback(heard, over.set, indirect=False),
         target=QueryTarget.ALL_COMPLETE,
         payload=b"".join(asked.to_ros()),
-        attachment=bytes(Attachment(1, time.time_ns(), gid(str(token)))),
+        attachment=attachment(1, time.time_ns(), gid(str(token))),
         timeout=TIMEOUT,
     )
     over.wait(TIMEOUT)

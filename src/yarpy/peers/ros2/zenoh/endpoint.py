@@ -24,11 +24,12 @@ from yarpy.peers.ros2.key import NO_HASH, Key
 from yarpy.peers.ros2.name import Node
 from yarpy.peers.ros2.qos import KEEP_ALL, PROFILES, Qos, promised
 from yarpy.peers.ros2.token import CLIENT, PUBLISHER, SERVER, SUBSCRIBER, Token, gid
-from yarpy.peers.ros2.zenoh.attachment import Attachment, parse_attachment
+from yarpy.peers.ros2.zenoh.attachment import attachment, parse_attachment
 from yarpy.peers.ros2.zenoh.coalesced import Coalesced
 from yarpy.peers.ros2.zenoh.description import describe
 from yarpy.peers.ros2.zenoh.participant import Declared, Participant
 from yarpy.peers.ros2.zenoh.querier import Querier
+from yarpy.peers.zenoh.spare import Spare
 from yarpy.transports.inbox import Inbox
 
 log = logger("yarpy.ros2")
@@ -204,6 +205,10 @@ class Publisher(Endpoint):
 
     _count = 0
 
+    def __init__(self, *arguments: Any) -> None:
+        super().__init__(*arguments)
+        self._spare = Spare()
+
     def join(self, key: Key, kind: Any) -> None:
         import zenoh
 
@@ -236,9 +241,11 @@ class Publisher(Endpoint):
     def give(self, item: Outgoing) -> None:
         self._count += 1
         body = item.body
-        payload = body[0] if len(body) == 1 else b"".join(body)
-        when = item.time or time.time_ns()
-        self._publisher.put(payload, attachment=bytes(Attachment(self._count, when, self._gid)))
+        joined = None if len(body) == 1 else self._spare.join(body)
+        beside = attachment(self._count, item.time or time.time_ns(), self._gid)
+        self._publisher.put(body[0] if joined is None else joined, attachment=beside)
+        if joined is not None:
+            self._spare.give_back(joined)
 
 
 class Subscriber(Endpoint):
@@ -360,8 +367,8 @@ class Client(Endpoint):
                     why = f"{GONE} {self.name} went away during the call"
                 self.put(Incoming(b"", failure=why), MOST_QUESTIONS)
 
-        attachment = bytes(Attachment(number, item.time or time.time_ns(), self._gid))
-        self._querier.get(heard, over, b"".join(item.body), attachment, served)
+        beside = attachment(number, item.time or time.time_ns(), self._gid)
+        self._querier.get(heard, over, b"".join(item.body), beside, served)
 
 
 def answer_of(reply: Any) -> Incoming:
@@ -416,6 +423,6 @@ class Server(Endpoint):
         if item.failure:
             query.reply_err(item.failure.encode("utf-8", "replace"))
         else:
-            attachment = bytes(Attachment(said.number, time.time_ns(), said.gid))
-            query.reply(str(self.key), b"".join(item.body), attachment=attachment)
+            beside = attachment(said.number, time.time_ns(), said.gid)
+            query.reply(str(self.key), b"".join(item.body), attachment=beside)
         query.drop()  # the asker waits for the end of it, not for the answer

@@ -24,7 +24,7 @@ from yarpy.peers.ros2.key import Key
 from yarpy.peers.ros2.name import Node
 from yarpy.peers.ros2.qos import Qos
 from yarpy.peers.ros2.token import CLIENT, SERVER
-from yarpy.peers.ros2.zenoh.attachment import Attachment
+from yarpy.peers.ros2.zenoh.attachment import attachment
 from yarpy.peers.ros2.zenoh.endpoint import Endpoint, Server, answer_of
 from yarpy.peers.ros2.zenoh.participant import take_part
 from yarpy.peers.ros2.zenoh.querier import Querier
@@ -131,7 +131,7 @@ class Caller(Endpoint):
             lambda reply: settle(answer_of(reply)),
             lambda: settle(None),
             b"".join(request.to_ros()),
-            bytes(Attachment(number, time.time_ns(), self._gid)),
+            attachment(number, time.time_ns(), self._gid),
             served,
         )
         return found

@@ -20,6 +20,7 @@ MESSAGES = {
     "rospy_tutorials/Floats": "420cd38b6b071cd49f2970c3e2cee511",
 }
 SERVICES = {
+    "nav_msgs/GetMap": "6cdd0a18e0aff5b0a3ca2326a89b54ff",
     "rospy_tutorials/AddTwoInts": "6a2e34150c00229791cc89ff309fff21",
     "roscpp_tutorials/TwoInts": "6a2e34150c00229791cc89ff309fff21",
     "control_msgs/QueryTrajectoryState": "ec93cdecbd8062d761aa52b7c90cd44b",
