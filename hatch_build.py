@@ -26,7 +26,7 @@ CORE = (
     *("wire/aside_stream", "wire/frame_stream", "wire/framing", "wire/lending_stream"),
     *("wire/shared_stream", "wire/stream"),
     *("link/byte_driver", "link/counter", "link/driver", "link/object_driver"),
-    *("link/receive/receiver", "link/receive/turn"),
+    *("link/receive/receiver", "link/receive/turn", "link/receive/gather"),
     *(
         "link/send/backlog",
         "link/send/dated",

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import socket
 import threading
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 
 from support.transport import ScriptTransport, scripted
@@ -28,6 +28,7 @@ class Owner:
 
     def __init__(self) -> None:
         self.heard: list[Message] = []
+        self.threads: list[str] = []  # in which it heard them
         self.ended: list[tuple[str, bool]] = []
         self.reversed: list[Inbound] = []
         self.answer: object = None
@@ -35,6 +36,7 @@ class Owner:
 
     def receive(self, link: Inbound, message: Message) -> None:
         self.heard.append(message)
+        self.threads.append(threading.current_thread().name)
         if isinstance(self.answer, BaseException):
             raise self.answer
         if self.answer is not None and message.wants_reply:
@@ -70,11 +72,15 @@ def served(
 
 
 @contextmanager
-def linked(kind: type[Carrier] = Tcp) -> Iterator[tuple[socket.socket, Inbound, Owner]]:
+def linked(
+    kind: type[Carrier] = Tcp, attend: Callable[[Inbound], object] = lambda link: None
+) -> Iterator[tuple[socket.socket, Inbound, Owner]]:
+    """A connection that is served in its thread. attend: called with it before it begins."""
     near, far = socket.socketpair()
     near.settimeout(5)
     owner = Owner()
     link = Inbound(owner, driver_of(SocketTransport(far)), kind(Route("/peer", "/here", kind.name)))
+    attend(link)
     link.thread = threading.Thread(target=link.serve, daemon=True)
     link.thread.start()
     try:

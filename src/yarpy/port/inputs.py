@@ -166,6 +166,7 @@ class Inputs:
                 goodbye.ask_to_leave(hub.registration, link.route.source)
             self._turn_away(link)
             raise PortClosed(f'"{self.name}" is closed')
+        self.mailbox.attend(link)
         hub.changed()
         hub.saved_qos.give(link)
         if any(_lives(old) for old in older):

@@ -50,6 +50,9 @@ class Mailbox:
         self._gate = threading.RLock()
         self.taken = 0.0  # when a message was taken last (time.perf_counter)
 
+    def attend(self, link: Inbound) -> None:
+        """A connection begins, which will bring its messages here."""
+
     def put(self, link: Inbound, message: Message) -> None:
         """Take a message that came over `link`."""
         raise NotImplementedError

@@ -89,6 +89,7 @@ class Inbound:
         # The next message, and the answer to a port command.
         self.advance: Callable[[float | None], Message] = self.receiver.advance
         self.answer: Callable[[Message], Bottle | list[str] | None] = self.carry_out
+        self.guarded = guard is not None
         if guard is not None:
             self.advance, self.answer = partial(guard.advance, self), partial(guard.answer, self)
         self.counter: Counter = self.receiver.counter

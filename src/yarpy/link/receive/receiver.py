@@ -371,11 +371,15 @@ class Receiver:
 
     def send_acks(self) -> None:
         """Acknowledge what was held back, and send what else was written."""
+        if not self.try_acks():
+            self._flush()
+
+    def try_acks(self) -> bool:
+        """As `send_acks`, as far as that needs no waiting; return whether all has left."""
         if self._unsent_acks:
             self.carrier.encode_ack(self.driver.stream, self._unsent_acks)
             self._unsent_acks = 0
-        if not self.driver.push():
-            self._flush()
+        return self.driver.push()
 
     def _flush(self) -> None:
         """Send what was written. Who dialled us and does not read must not keep a thread of the

@@ -48,9 +48,10 @@ class Batch:
             self._queue.lose(queued)
             self._queue.free(queued.size)
             return
-        self.begin()
         if not self._output.pending:
             self._settle()
+        elif not self._since:
+            self.begin()
 
     def count_missed(self, queued: QueuedMessage) -> None:
         """Count what the numbers of envelopes leave out."""

@@ -14,8 +14,10 @@ from typing import Any
 from yarpy.errors import AddressError
 from yarpy.kits.record.sink import ENDING
 from yarpy.names.base import NameClient
+from yarpy.port.assembly import open_hub
 from yarpy.port.connection import ConnectionEvent
-from yarpy.port.port import BufferedPort
+from yarpy.port.gathering import Gathering
+from yarpy.port.port import MessagePort
 
 
 def without_ending(path: str | Path | None) -> Path:
@@ -32,12 +34,13 @@ def open_port(
     connection: Callable[[ConnectionEvent], None],
     names: NameClient | None,
     usual: str = "/record",
-) -> BufferedPort:
+) -> MessagePort:
     """Return the port, by that name, or by one that is free. Raises AddressError, NoNameServer."""
     tries: Sequence[str] = [name] if name else [usual, f"{usual}/{os.getpid()}", "..."]
     for number, one in enumerate(tries):
         try:
-            return BufferedPort(one, callback=take, on_connection=connection, names=names)
+            mailbox = Gathering(take)
+            return MessagePort(open_hub(one, mailbox, names, on_connection=connection))
         except AddressError:
             if number == len(tries) - 1:
                 raise

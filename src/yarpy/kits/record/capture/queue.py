@@ -90,11 +90,12 @@ class MessageQueue:
             if known is not None:
                 known.broken = True
             return
-        period = self._period(port)
-        if period and self._leave_out(port, period):
+        if self._rates and (period := self._period(port)) and self._leave_out(port, period):
             return
         try:
-            payload = own(message)
+            payload = message.payload
+            if type(payload) is not bytes or message.spelling != "binary":
+                payload = own(message)
         except (YarpError, *UNSENDABLE):
             with self._lock:
                 self._count(port).refuse()
@@ -125,8 +126,6 @@ class MessageQueue:
         return count
 
     def _period(self, port: str) -> int:
-        if not self._rates:
-            return 0
         period = self._periods.get(port)
         if period is None:
             found = [rate for name, rate in self._rates.items() if fnmatch.fnmatchcase(port, name)]

@@ -5,7 +5,7 @@ Rules: pure. A vector or matrix of float64 is there once, all others a second ti
 
 from __future__ import annotations
 
-import struct
+from functools import lru_cache
 from struct import Struct
 from typing import Final
 
@@ -61,8 +61,13 @@ def _split(payload: Bytes, start: int, count: int) -> Spelled:
     return Spelled(NUMBERS_BODY, _head(count), view[start:], view[:start])
 
 
+@lru_cache(64)
+def _struct(count: int) -> Struct:
+    return Struct(f"{CDR_HEAD.format}{count}d")
+
+
 def numbers(values: tuple[float, ...], payload: Bytes) -> Spelled:
     """Return a message of any numbers."""
     count = len(values)
-    front = struct.pack(f"{CDR_HEAD.format}{count}d", 0, 1, 0, 0, 0, count, *values)
+    front = _struct(count).pack(0, 1, 0, 0, 0, count, *values)
     return Spelled(NUMBERS, front, b"", payload)
