@@ -48,6 +48,13 @@ def test_no_ports(here):
     assert (said.code, said.out) == (255, "") and "yarpy merge /port1" in said.err
 
 
+def test_recordings_are_merged_elsewhere(here, tmp_path):
+    file = tmp_path / "a.mcap"
+    file.touch()
+    said = here("merge", str(file), str(file), "-o", "b")
+    assert said.code == 255 and "yarpy convert" in said.err
+
+
 def test_a_source_that_is_not_there(here, names):
     said = here("merge", "/nobody")
     assert said.code == 255 and '"/nobody"' in said.err

@@ -37,6 +37,7 @@ def test_a_recorder(names, tmp_path: Path) -> None:
             ["resume"],
             ["mark", "it fell"],
             ["mark"],
+            ["mark", "at", 7, "o'clock"],
             ["split"],
         )
         assert pause == ["ok"] and all(answer == ["ok"] for answer in rest)
@@ -46,7 +47,10 @@ def test_a_recorder(names, tmp_path: Path) -> None:
         wait_until(lambda: len(recorder.files) == 2)
         assert ask(names, words, ["stop"]) == [["ok"]] and stopped == [True]
     with record.open(*recorder.files) as found:
-        assert [note.get("text") for note in found.notes()] == [None, None, "it fell", ""]
+        assert [note.get("text") for note in found.notes()] == [
+            *(None, None, "it fell", ""),
+            "at 7 o'clock",
+        ]
 
 
 def test_a_player(names, tmp_path: Path) -> None:

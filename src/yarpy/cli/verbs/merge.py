@@ -11,6 +11,7 @@ Exit codes: 255 without ports, or when one cannot be connected.
 
 from __future__ import annotations
 
+import os
 import threading
 import time
 from collections.abc import Callable
@@ -51,7 +52,7 @@ class Merger:
 @click.command()
 @click.argument("ports", nargs=-1)
 @click.option("--input", "first", metavar="PORT...", help="The ports to read from.")
-@click.option("--output", default=OUTPUT, metavar="PORT", help="Where it leaves.")
+@click.option("-o", "--output", default=OUTPUT, metavar="PORT", help="Where it leaves.")
 @click.option("--worker", default=WORKER, metavar="PREFIX", help="Where it arrives.")
 @click.option("--carrier", default="udp", help="How the ports are connected.")
 def command(
@@ -60,6 +61,9 @@ def command(
     """Concatenate what PORTS send."""
 
     sources = [first, *ports] if first else list(ports)
+    if any(map(os.path.isfile, sources)):
+        complain("ports are merged here; recordings are by `yarpy convert A B -o NAME`")
+        return FAILED
     if not sources:
         complain("which ports? `yarpy merge /port1 /port2`")
         return FAILED

@@ -11,7 +11,7 @@ Rules: the answer is `[ok]` and what was asked for, or `[fail]` and why. Nobody 
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from inspect import signature
 from typing import Any, TypeAlias
 
@@ -45,8 +45,9 @@ class Commands:
         if act is None:
             return _failed(f"no word {word[:100]!r}: there are {' '.join(sorted(self._table))}")
         wanted = signature(act).parameters.values()
-        least = sum(one.default is one.empty for one in wanted)
-        if not least <= len(said) - 1 <= len(wanted):
+        words = any(one.kind is one.VAR_POSITIONAL for one in wanted)
+        least = 0 if words else sum(one.default is one.empty for one in wanted)
+        if len(said) - 1 < least or not (words or len(said) - 1 <= len(wanted)):
             return _failed(" ".join([word, *(one.name.upper() for one in wanted)]))
         try:
             found = act(*said[1:])
@@ -61,11 +62,16 @@ def _failed(why: str) -> Bottle:
     return Bottle([Vocab("fail"), why])
 
 
+def _line(words: Iterable[object]) -> str:
+    """Return a text that was said with or without quotes."""
+    return " ".join(map(plain_text, words))
+
+
 def recorder_commands(recorder: Recorder, stop: Callable[[], object]) -> Commands:
     """Return what a recorder is told; `stop` ends it."""
 
-    def mark(text: object = "") -> None:
-        recorder.mark(plain_text(text))
+    def mark(*text: object) -> None:
+        recorder.mark(_line(text))
 
     def end() -> None:
         stop()
@@ -105,8 +111,8 @@ def player_commands(player: Player) -> Commands:
     def seek(seconds: float) -> None:
         player.seek(float(seconds))
 
-    def mark(text: object) -> None:
-        player.seek_mark(plain_text(text))
+    def mark(*text: object) -> None:
+        player.seek_mark(_line(text))
 
     def loop(begin: float | None = None, end: float | None = None) -> None:
         if begin is None:

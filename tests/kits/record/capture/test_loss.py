@@ -15,7 +15,8 @@ def test_losses_are_told_once() -> None:
     for _ in range(2):
         losses.tell(lambda what, now: notes.append({**what, "now": now}), told.append, 7)
     assert notes == [{"what": "lost", "port": "/a", "count": 2, "missed": 1, "now": 7}]
-    assert told == ["2 messages of /a were lost: the disk is too slow"]
+    (line,) = told
+    assert line.startswith("2 messages of /a were lost: the disk is too slow, ")
     count.missed = 4
     losses.tell(lambda what, now: notes.append({**what, "now": now}), told.append, 8)
     assert (notes[1]["count"], notes[1]["missed"]) == (0, 3) and len(told) == 1

@@ -290,6 +290,8 @@ def test_nothing_but_snapshots(tmp_path, names, out) -> None:
     with Recorder("/out", path=tmp_path / "x", names=names, snapshot=3600) as recorder:
         assert out.wait_for_outputs(timeout=HANG)
         assert (recorder.state, recorder.files, recorder.snapshots) == ("keeping", [], True)
+        with pytest.raises(LocalProtocolError, match="only snapshots"):
+            recorder.split()
         for number in (1, 2):
             for n in range(50):
                 out.write([number, n])

@@ -55,3 +55,14 @@ def test_what_is_no_numbers_is_left_out(tmp_path: Path) -> None:
         assert (done.messages, done.left_out) == (18, 6)
         with pytest.raises(FileExistsError):
             convert(found, tmp_path / "walk.mat", form="robometry")
+
+
+def test_a_configuration_names_no_pixels(tmp_path: Path) -> None:
+    with McapWriter(tmp_path / "x.mcap") as writer:
+        image = yarpy.Image(np.zeros((20, 30, 3), "u1"))
+        writer.add("/cam", "0 10.5", START, payload_of(image))
+        writer.add("/arm", "0 10.5", START, payload_of(yarpy.Vector([1.0, 0.5])))
+    with record.open(tmp_path / "x.mcap") as found:
+        convert(found, tmp_path / "walk", form="robometry")
+    with record.open(tmp_path / "walk.json") as found:
+        assert found.ports["/arm"].messages == 1

@@ -10,7 +10,7 @@ from support.wait import HANG, wait_until
 import yarpy
 from yarpy import record
 from yarpy.errors import LocalProtocolError
-from yarpy.kits.record.verbs.record import parse_rate, press
+from yarpy.kits.record.verbs.record import Keys, parse_memory, parse_rate
 
 
 @pytest.fixture
@@ -106,17 +106,27 @@ def test_rates() -> None:
 def test_keys(tmp_path, names, out) -> None:
     news: list[str] = []
     with record.Recorder("/out", path=tmp_path / "x", names=names) as recorder:
-        assert press(recorder, " ", news) and recorder.paused
-        assert press(recorder, " ", news) and not recorder.paused
-        assert (
-            press(recorder, "m", news) and press(recorder, "s", news) and press(recorder, "?", [])
-        )
+        keys = Keys(recorder, news)
+        assert keys.press(" ") and recorder.paused
+        assert keys.press(" ") and not recorder.paused
+        assert all(map(keys.press, "mqe\x7f is up")) and keys.shown == [
+            "note, then Enter: q is up_"
+        ]
+        assert all(map(keys.press, "\rmno\x1bm\rs?")) and not keys.shown
         wait_until(lambda: len(recorder.files) == 2)
-        assert not press(recorder, "q", news)
-    assert len(news) == 2
+        assert keys.press("m") and not keys.press("\x03")
+        assert not Keys(recorder, news).press("q")
+    assert len(news) == 3 and news[0].endswith(": q is up")
     with record.open(*recorder.files) as found:
-        told = [one["what"] for one in found.notes()]
-        assert [one for one in told if "connected" not in one] == ["pause", "resume", "mark"]
+        notes = [note for note in found.notes() if "connected" not in note["what"]]
+        assert [note["what"] for note in notes] == ["pause", "resume", "mark", "mark"]
+        assert [note.get("text") for note in notes[2:]] == ["q is up", ""]
+
+
+def test_memory() -> None:
+    assert parse_memory("1MB") == 1_000_000
+    with pytest.raises(LocalProtocolError, match="1MB or more"):
+        parse_memory("10")
 
 
 def test_it_is_told_what_to_do(cli, names, out, tmp_path) -> None:

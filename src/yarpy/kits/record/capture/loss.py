@@ -37,7 +37,8 @@ class Losses:
                 lost, missed = found[0] - before[0], found[1] - before[1]
                 note({"what": "lost", "port": port, "count": lost, "missed": missed}, now)
                 if lost:
-                    tell(f"{lost} messages of {port} were lost: the disk is too slow")
+                    why = "the disk is too slow, the memory small, or the file gone"
+                    tell(f"{lost} messages of {port} were lost: {why}")
 
     def of_file(self) -> dict[str, str]:
         """Return what was lost since the last file was finished, as JSON."""

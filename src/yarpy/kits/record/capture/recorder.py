@@ -124,7 +124,7 @@ class Recorder:
         self.failure = ""
         where = without_ending(path)
         self._disk = room or DiskSpace(where.parent)
-        self._port = open_port(name, self._take, self._connection, names)
+        self._port = open_port(name, self._queue.put, self._connection, names)
         try:
             self._output = Output(
                 where, compression, split, most, lambda: self._facts, self._losses.of_file,
@@ -223,12 +223,15 @@ class Recorder:
             self._note("resume")
             self._queue.paused = False
 
-    def mark(self, text: str = "") -> None:
-        """Note something about this moment."""
-        self._note("mark", text=text[:10_000])
+    def mark(self, text: str = "", ago: float = 0.0) -> None:
+        """Note something about this moment, or one that was so many seconds ago."""
+        moment = self._now() - round(ago * SECOND)
+        self._notes.append(({"what": "mark", "text": text[:10_000]}, moment))
 
     def split(self) -> None:
-        """Go on in a new file."""
+        """Go on in a new file. Raises LocalProtocolError where only snapshots are written."""
+        if self._ring is not None:
+            raise LocalProtocolError("only snapshots are written: snapshot begins a file")
         self._wishes.append(self._output.split)
         self._queue.wake()
 
@@ -242,9 +245,6 @@ class Recorder:
         self._queue.wake()
 
     # -- what comes --------------------------------------------------------------------------------
-
-    def _take(self, message: Any) -> None:
-        self._queue.put(message)
 
     def _connection(self, event: ConnectionEvent) -> None:
         if event.incoming and event.created:
@@ -306,6 +306,7 @@ class Recorder:
                 if last:
                     self._losses.tell(self._output.note, self._tell, self._now())
                     return
+            batch.flush()  # a disk that is nearly full takes what was on its way
         finally:
             batch.lose()
             # What comes between the failure and the end is not written either.

@@ -37,6 +37,7 @@ if TYPE_CHECKING:
 
 PERIOD: Final = 0.5  # seconds between looks
 NEWS: Final = 100  # lines that are kept
+LEAST: Final = 1_000_000  # bytes of --memory
 
 
 @click.command()
@@ -105,7 +106,7 @@ def command(
 ) -> int:
     """Keep what PORTs send in a file, which yarpy play plays and Foxglove reads."""
     from yarpy.cli.browser import open_page, url_of
-    from yarpy.kits.record.capture.disk_space import parse_size, parse_split, parse_time
+    from yarpy.kits.record.capture.disk_space import parse_split, parse_time
     from yarpy.kits.record.capture.recorder import Recorder
     from yarpy.kits.record.capture.screen import Rates, summary
     from yarpy.kits.record.commands import recorder_commands
@@ -142,7 +143,7 @@ def command(
             compression=compression,
             split=None if split is None else parse_split(split),
             most=most or 0,
-            memory=parse_size(memory),
+            memory=parse_memory(memory),
             rates=dict(map(parse_rate, rates)),
             snapshot=0.0 if snapshot is None else parse_time(snapshot),
             triggers=dict(map(parse_trigger, triggers)),
@@ -167,7 +168,7 @@ def command(
                 news.append(shown)
                 _live(recorder, began, duration, news)
             else:
-                warn(f"{beginning(recorder)}; {shown}")
+                click.echo(f"{beginning(recorder)}; {shown}", err=True)
                 stop.wait(duration)
     except Interrupted:
         pass  # how it ends
@@ -195,6 +196,16 @@ def parse_rate(text: str) -> tuple[str, float]:
     if not (name and equals and 0 < rate < 1e9):
         raise LocalProtocolError(f'"{text}" is no rate of a port: /cam/*=10')
     return name, rate
+
+
+def parse_memory(text: str) -> int:
+    """Return the bytes of `256MB`. Raises LocalProtocolError, also for too few."""
+    from yarpy.kits.record.capture.disk_space import parse_size
+
+    size = parse_size(text)
+    if size < LEAST:
+        raise LocalProtocolError(f'"{text}" of memory keeps next to nothing: 1MB or more')
+    return size
 
 
 def parse_trigger(text: str) -> tuple[str, str]:
@@ -233,7 +244,7 @@ def recovered(file: str, path: str | None, compression: str) -> int:
         for damage in recording.damages:
             warn(damage)
     print_line(f"{done.path}: {done.messages} messages")
-    return 0
+    return 0 if done.messages else 1
 
 
 def status_of(recorder: Recorder, began: float, seen: Rates, news: Sequence[str]) -> Status:
@@ -293,12 +304,12 @@ def _live(
     from yarpy.cli.verbs.top import keys
     from yarpy.kits.record.capture.screen import Rates, text
 
-    seen, console = Rates(), Console(highlight=False)
+    seen, console, typing = Rates(), Console(highlight=False), Keys(recorder, news)
     until = None if duration is None else began + duration
     with keys() as pressed, Live(console=console, auto_refresh=False, screen=True) as live:
         while not recorder.ended.is_set() and (until is None or time.monotonic() < until):
             size = shutil.get_terminal_size((80, 24))
-            status = status_of(recorder, began, seen, news)
+            status = status_of(recorder, began, seen, [*news, *typing.shown])
             live.update(text(status, size.columns, size.lines), refresh=True)
             end = time.monotonic() + PERIOD
             while (left := end - time.monotonic()) > 0:
@@ -306,13 +317,54 @@ def _live(
                     key = pressed.get(timeout=left)
                 except queue.Empty:
                     break
-                if not press(recorder, key, news):
+                if not typing.press(key):
                     return
+                if typing.shown:
+                    break
+
+
+class Keys:
+    """What the keys of a recorder's terminal do. Behind `m` a note may be typed: Enter marks the
+    moment of the `m` with it, Escape does not."""
+
+    def __init__(self, recorder: Recorder, news: MutableSequence[str]) -> None:
+        self._recorder = recorder
+        self._news = news
+        self._note: str | None = None  # while one is typed
+        self._began = 0.0
+
+    @property
+    def shown(self) -> list[str]:
+        """Return the line for what is being typed."""
+        return [] if self._note is None else [f"note, then Enter: {self._note}_"]
+
+    def press(self, key: str) -> bool:
+        """Do what a key stands for; return whether to go on."""
+        note = self._note
+        if key in ("\x03", "\x04"):
+            return False
+        if note is None:
+            if key != "m":
+                return press(self._recorder, key, self._news)
+            self._note, self._began = "", time.monotonic()
+        elif key in "\r\n":
+            ago = time.monotonic() - self._began
+            self._recorder.mark(note, ago)
+            at = time.strftime("%H:%M:%S", time.localtime(time.time() - ago))
+            self._news.append(f"marked at {at}" + (f": {note}" if note else ""))
+            self._note = None
+        elif key == "\x1b":
+            self._note = None
+        elif key in "\x7f\b":
+            self._note = note[:-1]
+        elif key.isprintable():
+            self._note = note + key
+        return True
 
 
 def press(recorder: Recorder, key: str, news: MutableSequence[str]) -> bool:
-    """Do what a key stands for; return whether to go on."""
-    if key in ("q", "\x03", "\x04"):
+    """Do what a key stands for that is no note's; return whether to go on."""
+    if key == "q":
         return False
     if key == " ":
         if recorder.paused:
@@ -326,7 +378,4 @@ def press(recorder: Recorder, key: str, news: MutableSequence[str]) -> bool:
         else:
             recorder.split()
             news.append("a new file")
-    elif key == "m":
-        recorder.mark()
-        news.append(f"marked at {time.strftime('%H:%M:%S')}")
     return True
