@@ -22,7 +22,8 @@ if TYPE_CHECKING:
 
 ROOT = Path(__file__).parents[2]
 SIZE = {"width": 1200, "height": 760}
-LARGEST = 400_000  # bytes of one, so that a clone stays small
+WIDE = 1440  # of the pages of recordings
+LARGEST = 480_000  # bytes of one, so that a clone stays small
 FOLDER = Path(os.environ.get("YARPY_PICTURES", ROOT / "tests" / "output" / "docs"))
 URL = r"http://\S+"
 
@@ -38,12 +39,12 @@ def line(tmp_path_factory: pytest.TempPathFactory) -> Iterator[CommandLine]:
         yield CommandLine(found.home, {"YARPY_SERVER": server, "DEMO_PAGE": page})
 
 
-def open_page(browser: Browser, url: str, phone: bool = False) -> Page:
+def open_page(browser: Browser, url: str, phone: bool = False, width: int = SIZE["width"]) -> Page:
     page = browser.open(phone=phone)
     if phone:
         page.goto(url, wait_until="commit")
         return page
-    page.set_viewport_size(SIZE)  # type: ignore[arg-type]
+    page.set_viewport_size({"width": width, "height": SIZE["height"]})
     page.goto(url, wait_until="commit")  # pages with streams never stop loading
     return page
 
@@ -112,22 +113,22 @@ def test_a_recording(browser: Browser, line: CommandLine) -> None:
         command = ["rpc", "/icubSim/head/rpc:i"]
         assert line.run(*command, input="set pos 0 -25\nset pos 2 40\n").returncode == 0
         line.run("rpc", "/record/rpc:i", input='mark "it looks up"\n')
-        page = open_page(browser, address(recorder))
+        page = open_page(browser, address(recorder), width=WIDE)
         page.get_by_label("Note of this moment").fill("it looks away")
         page.wait_for_timeout(2500)  # rates are those of the last seconds
-        keep(page, "record", 420)
+        keep(page, "record", 420, WIDE)
         page.wait_for_timeout(9000)  # there is something to look back at
         page.get_by_role("button", name="Stop").click()
         page.get_by_role("button", name="Stop now?").click()
         assert recorder.wait(2 * HANG) == 0
     with line.start("view", "walk.mcap", "--no-browser") as view:
         url = address(view)
-        page = open_page(browser, url)
+        page = open_page(browser, url, width=WIDE)
         page.wait_for_selector("#cards figure")
         page.keyboard.press("Shift+ArrowRight")
         page.wait_for_selector("#cards figure .picture:visible")
         page.wait_for_timeout(1500)
-        keep(page, "view", 640)
+        keep(page, "view", 640, WIDE)
         page = open_page(browser, url, phone=True)
         page.wait_for_selector("#cards figure")
         page.keyboard.press("Shift+ArrowRight")
