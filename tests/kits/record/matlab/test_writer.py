@@ -59,7 +59,7 @@ def test_what_is_no_numbers_is_left_out(tmp_path: Path) -> None:
 
 def test_a_configuration_names_no_pixels(tmp_path: Path) -> None:
     with McapWriter(tmp_path / "x.mcap") as writer:
-        image = yarpy.Image(np.zeros((20, 30, 3), "u1"))
+        image = yarpy.Image(np.zeros((240, 320, 3), "u1"))
         writer.add("/cam", "0 10.5", START, payload_of(image))
         writer.add("/arm", "0 10.5", START, payload_of(yarpy.Vector([1.0, 0.5])))
     with record.open(tmp_path / "x.mcap") as found:

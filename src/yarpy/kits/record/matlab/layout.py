@@ -18,7 +18,7 @@ from typing import Any, Final
 DESCRIPTION: Final = "description_list"
 ROBOT: Final = "yarp_robot_name"
 ENDING: Final = ".mat"
-NAMED: Final = 1024  # numbers of a channel whose names stand in a configuration; pixels have none
+NAMED: Final = 1024  # numbers of a channel whose names are written; pixels have none
 CONFIGURATION: Final = ".json"
 NEEDS: Final = 'files of MATLAB need a library: pip install "yarpy[matlab]"'
 LONGEST: Final = 63  # letters of a field
@@ -84,7 +84,7 @@ def configuration(
             {
                 "name": channel,
                 "dimensions": [int(size) for size in leaf["dimensions"][:-1]],
-                **{key: [*map(str, leaf[key].flat)] for key in _NAMES if leaf[key].size <= NAMED},
+                **{key: [*map(str, leaf[key].flat)] for key in _NAMES},
             }
             for channel, leaf in found
         ],

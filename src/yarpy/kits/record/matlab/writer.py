@@ -21,6 +21,7 @@ from yarpy.kits.record.envelope import SECOND, fields_of
 from yarpy.kits.record.matlab.layout import (
     DESCRIPTION,
     ENDING,
+    NAMED,
     NEEDS,
     ROBOT,
     configuration,
@@ -93,11 +94,14 @@ class MatWriter:
         for port, channel in self._channels.items():
             size, count = math.prod(channel.shape), len(channel.times)
             named = _fitting(elements, port, size) or [f"element_{n}" for n in range(size)]
+            measured = _fitting(units, port, size) or ["n.d."] * size
+            if size > NAMED:
+                named, measured = [], []
             leaf = {
                 "data": np.array(channel.numbers).reshape(*channel.shape, count, order="F"),
                 "dimensions": np.array([*channel.shape, count], "u8"),
                 "elements_names": _cells(named),
-                "units_of_measure": _cells(_fitting(units, port, size) or ["n.d."] * size),
+                "units_of_measure": _cells(measured),
                 "name": port,
                 "timestamps": np.array(channel.times),
             }
