@@ -17,7 +17,7 @@ from support.tls import prepare
 from support.wait import HANG, wait_until
 
 from yarpy.carriers.web import xmlrpc
-from yarpy.carriers.web.http import carrier as http
+from yarpy.carriers.web.http import exchange as http
 from yarpy.link.begin import handshake
 from yarpy.link.begin.greeting import driver_of
 from yarpy.link.begin.handshake import greet
