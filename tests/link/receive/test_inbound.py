@@ -22,7 +22,7 @@ from yarpy.carriers.own.tcp import Tcp
 from yarpy.carriers.own.text import TextAck
 from yarpy.data.bottle import Bottle
 from yarpy.data.value import Vocab
-from yarpy.errors import DecodeError, LinkClosed
+from yarpy.errors import DecodeError
 from yarpy.link.begin.greeting import driver_of
 from yarpy.link.begin.handshake import recognise
 from yarpy.link.receive import turn
@@ -244,6 +244,8 @@ def test_nobody_else_writes_while_a_question_is_open() -> None:
         found = read(link, None)
         assert found is not None
         assert near.recv(len(ACK)) == ACK
+        assert found.answer is not None
+        found.answer.right.clear()  # another thread answers
         link.receiver.driver.stream.write(b"half of an answer")
         link.turn.end()  # as when another sender comes
         near.settimeout(0.3)
@@ -251,8 +253,6 @@ def test_nobody_else_writes_while_a_question_is_open() -> None:
             near.recv(1)
         link.close()
         assert near.recv(1) == b""
-        with pytest.raises(LinkClosed):
-            found.reply("late")
 
 
 def test_borrower_that_wants_the_newest_gets_the_last_of_those_that_are_there() -> None:

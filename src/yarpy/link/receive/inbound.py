@@ -151,7 +151,6 @@ class Inbound:
         idle_timeout = self.carrier.limits.idle_timeout
         receiver = self.receiver
         lease: Lease | None = None
-        answered = False  # by another thread, which may be writing
         try:
             while not (self._quit or self._reversed) or receiver.held is not None:
                 if lease is not None or idle_timeout is not None:
@@ -159,12 +158,11 @@ class Inbound:
                 lease = self._read_on()
                 if lease is not None:
                     self.turn.park(lease, self._is_asked)
-                    answered = receiver.question is not None
                     if lease.forsaken:
                         self.counter.drops += receiver.held is not None
                         break
-                    if answered:
-                        break  # closed
+                    if receiver.question is not None:
+                        break  # closed; whoever answers may be writing
         except LinkClosed as error:
             reason = "" if self._closing else str(error)  # whoever ends it himself knows
         except YarpError as error:
@@ -183,7 +181,7 @@ class Inbound:
             return
         if not (self._quit or self._closing) and (word := self.carrier.last_word()) is not None:
             self._hand_over_last(word)
-        receiver.finish(acks=not answered)
+        receiver.finish()
         self.owner.input_ended(self, reason, self._quit)
 
     def _is_asked(self) -> bool:

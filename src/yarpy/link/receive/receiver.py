@@ -409,15 +409,26 @@ class Receiver:
                 self.tear()
                 raise
 
-    def finish(self, acks: bool = True) -> None:
-        """The last acknowledgements, unless another thread writes there, and the end."""
+    def finish(self) -> None:
+        """The last acknowledgements, unless another thread writes an answer, and the end."""
         try:
-            if acks:
+            if self._ends_question():
                 self.send_acks()
         except YarpError:
             pass  # the peer has gone
         self.close()
         self.incoming.leave()
+
+    def _ends_question(self) -> bool:
+        """Let nobody answer any more; return False if a thread is at it."""
+        question = self.question
+        if question is not None:
+            try:
+                del question.right[0]
+            except IndexError:
+                return False
+            self.question = None
+        return True
 
     def close(self) -> int:
         """Hang up; return how many messages had come that nobody reads: they are counted."""
