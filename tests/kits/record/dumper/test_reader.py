@@ -30,6 +30,12 @@ def test_all_of_one_recording() -> None:
     storage.close()
 
 
+def test_pictures_are_part_of_its_size() -> None:
+    files = [file for file in (GOLDEN / "image").iterdir() if file.is_file()]
+    assert len(files) > 2
+    assert DumperStorage(GOLDEN / "image").size == sum(file.stat().st_size for file in files)
+
+
 def test_values_and_times() -> None:
     (first, _, last) = DumperStorage(GOLDEN / "bottle_rxtx").messages()
     assert first.value == [1, "ping", 3.14] and last.value == ["hello"]

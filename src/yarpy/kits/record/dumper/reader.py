@@ -10,6 +10,7 @@ lead nowhere else.
 from __future__ import annotations
 
 import heapq
+import os
 import re
 from collections.abc import Callable, Container, Iterator
 from pathlib import Path
@@ -118,6 +119,8 @@ class Part:
         try:
             with open(folder / INFO, "rb") as file:
                 text = file.read(RECORDED_TEXT).decode("utf-8", "replace")
+            with os.scandir(folder) as found:
+                self.size = sum(one.stat().st_size for one in found if one.is_file())
         except OSError as error:
             raise MissingFile(f"{folder / INFO} cannot be read: {error.strerror}") from error
         lines = text.splitlines()
@@ -132,14 +135,12 @@ class Part:
         self.messages = 0
         self.complete = True
         self.span = (0, 0)
-        self.size = 0
         self._survey()
 
     def _survey(self) -> None:
         """Count the lines, and read their times."""
         first, last = 0, 0
         for _, line in self._lines():
-            self.size += len(line)
             times = self._times(line)
             if times is not None:
                 self.messages += 1
