@@ -15,7 +15,6 @@ type is not sent, and counted.
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
 from typing import Any, Final, Protocol
 
 from yarpy.carriers.base import Carrier, Limits
@@ -59,36 +58,36 @@ class Topic(Protocol):
         """The time, in seconds."""
 
 
-@dataclass(slots=True)
 class Outgoing:
     """A message, question or answer that goes. `time` is in nanoseconds, 0 for now. `to`: what it
-    answers; `failure`: why there is no answer."""
+    answers; `failure`: why there is no answer. `size`: in bytes."""
 
-    kind: Any
-    body: tuple[Buffer, ...]
-    time: int = 0
-    to: Any = None
-    failure: str = ""
+    __slots__ = ("body", "failure", "kind", "size", "time", "to")
 
-    @property
-    def size(self) -> int:
-        return sum(map(len, self.body))
+    def __init__(
+        self,
+        kind: Any,
+        body: tuple[Buffer, ...],
+        time: int = 0,
+        to: Any = None,
+        failure: str = "",
+    ) -> None:
+        self.kind, self.body, self.time, self.to, self.failure = kind, body, time, to, failure
+        self.size = sum(map(len, body))
 
 
-@dataclass(slots=True)
 class Incoming:
     """A message, question or answer that came; `number` and `time` stood beside it. `asked`: the
-    question, to be answered. `failure`: why there is no answer."""
+    question, to be answered. `failure`: why there is no answer. `size`: in bytes."""
 
-    body: Buffer
-    number: int = 0
-    time: int = 0
-    asked: Any = None
-    failure: str = ""
+    __slots__ = ("asked", "body", "failure", "number", "size", "time")
 
-    @property
-    def size(self) -> int:
-        return len(self.body)
+    def __init__(
+        self, body: Buffer, number: int = 0, time: int = 0, asked: Any = None, failure: str = ""
+    ) -> None:
+        self.body, self.number, self.time = body, number, time
+        self.asked, self.failure = asked, failure
+        self.size = len(body)
 
 
 class Ros2(Hosted):
