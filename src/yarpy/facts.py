@@ -10,7 +10,6 @@ from dataclasses import dataclass, fields
 from typing import Any, Final, Self
 
 MAGIC_SIZE: Final = 8  # bytes that identify the protocol of a connection
-_ANY: Final = (1 << 8 * MAGIC_SIZE) - 1
 
 
 @dataclass(frozen=True, slots=True)

@@ -4,15 +4,8 @@ from __future__ import annotations
 
 from typing import Any
 
-import yarpy
-
 
 def encoded(value: Any) -> bytes:
     """The binary message of an object that ports send."""
     blocks = value.to_wire() if hasattr(value, "to_wire") else (value.to_bytes(),)
     return b"".join(blocks)
-
-
-def bottle_of(value: Any) -> yarpy.Bottle:
-    """The elements of an object that ports send, as any Bottle would hold them."""
-    return yarpy.Bottle.from_bytes(encoded(value))

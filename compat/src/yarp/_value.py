@@ -68,11 +68,6 @@ def vocab64(x: Any) -> Word64:
     return Word64(x[:8]) if isinstance(x, str) else Word64(word64(whole(x, 64)))
 
 
-def native_int(value: int) -> int:
-    """An int32 as it is stored: without the subclass that a message may have given it."""
-    return int(value)
-
-
 def parsed(words: str) -> yarpy.Bottle:
     """Return the values of a text in YARP's notation; none, if its lists are too deep."""
     try:

@@ -14,7 +14,7 @@ from hypothesis import strategies as st
 from support.peer import program
 
 import yarpy
-from yarpy.kits.views.wav import WavWriter, deinterleaved, interleaved, read_wav
+from yarpy.kits.views.wav import WavWriter, interleaved, read_wav
 
 STEREO = yarpy.Sound([[1, 2, 3], [-1, -2, -3]], 8000)
 
@@ -119,6 +119,5 @@ def test_interleaving(channels: int, values: list[int]) -> None:
     values = values[: len(values) // channels * channels]
     sound = yarpy.Sound(np.array(values, "i2").reshape(channels, -1), 100)
     data = interleaved(sound)
-    assert deinterleaved(data, channels, 100) == sound
     frames = [values[n :: len(values) // channels] for n in range(len(values) // channels or 0)]
     assert data == b"".join(struct.pack(f"<{channels}h", *frame) for frame in frames)

@@ -89,11 +89,6 @@ def interleaved(sound: yarpy.Sound) -> bytes:
     return sound.array.T.tobytes()
 
 
-def deinterleaved(data: bytes, channels: int, frequency: int) -> yarpy.Sound:
-    """A sound from 16-bit samples as devices deliver them."""
-    return _sound(data, channels, 2, frequency)
-
-
 def _sound(data: bytes, channels: int, width: int, frequency: int) -> yarpy.Sound:
     import numpy as np
 

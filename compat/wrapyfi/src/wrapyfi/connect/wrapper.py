@@ -34,7 +34,6 @@ DEFAULT_COMMUNICATOR = os.environ.get(
 MODES = ("publish", "listen", "reply", "request", "transceive", "reemit", "receive", "disable")
 _RECORD = "__wrapyfi_record__"
 _SIDES = ("publisher_kwargs", "listener_kwargs")
-_PLACES = ("class_name", "out_topic", "in_topic")
 
 _records: list[Record] = []
 _lock = threading.RLock()  # of records and their instances

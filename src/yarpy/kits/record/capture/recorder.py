@@ -108,7 +108,6 @@ class Recorder:
         self._queue = MessageQueue(memory, rates, now)
         self._queue.paused = paused
         self._tell = tell
-        self._begun = time.time_ns()
         self._facts = {
             "host": platform.node(),
             "system": platform.platform(),

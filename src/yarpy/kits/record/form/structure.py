@@ -18,7 +18,6 @@ from yarpy.data.value import FIXED, GROUP_MASK, LIST, UNIT_MASK, VOCAB32
 
 NUMBERS: Final = 4096  # in a message; lists of one kind of number may be longer
 DEPTH: Final = 4  # lists in lists
-_HEAD: Final = Struct("<ii")
 _TAG: Final = Struct("<i")
 
 

@@ -30,11 +30,8 @@ PRIVATE: Final = 0x80  # opcodes from here on are the writer's own, and skipped
 HEAD: Final = Struct("<BQ")  # of every record
 MESSAGE_HEAD: Final = Struct("<HIQQ")  # channel, sequence, receipt, sent
 WHOLE_MESSAGE: Final = Struct("<BQHIQQ")  # ... with that of its record
-CHUNK_HEAD: Final = Struct("<QQQII")  # first and last time, size, checksum, length of the next word
 FOOTER_BODY: Final = Struct("<QQI")
-_TWO: Final = Struct("<HH")
 _U16, _U32, _U64 = Struct("<H"), Struct("<I"), Struct("<Q")
-_INDEX_HEAD: Final = Struct("<HI")
 
 
 class Damaged(DecodeError):

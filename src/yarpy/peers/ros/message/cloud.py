@@ -19,7 +19,6 @@ from yarpy.peers.ros.message.message import Message
 _DATATYPES: Final = {1: "i1", 2: "u1", 3: "i2", 4: "u2", 5: "i4", 6: "u4", 7: "f4", 8: "f8"}
 _UINT32: Final = 6
 _FLOAT32: Final = 7
-_COLOURS: Final = {"b", "g", "r", "a"}
 _MAX_SIDE: Final = 0x7FFFFFFF
 _MAX_FIELDS: Final = 256
 
