@@ -70,11 +70,17 @@ def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
             item.add_marker(pytest.mark.peer(*names))
 
 
-def pytest_collection_finish() -> None:
-    """Let the collector of garbage leave alone what all tests are made of, a million objects: tests
-    that call it, which are many, would go through them each time."""
-    gc.collect()
-    gc.freeze()
+@pytest.hookimpl(wrapper=True)
+def pytest_collection() -> Generator[None, object, object]:
+    """Let the collector of garbage leave alone what all tests are made of, a million objects: it
+    would go through them again and again while they are made, and with each test that calls it."""
+    gc.disable()
+    try:
+        return (yield)
+    finally:
+        gc.enable()
+        gc.collect()
+        gc.freeze()
 
 
 @pytest.hookimpl(tryfirst=True)

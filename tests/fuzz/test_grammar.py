@@ -8,7 +8,7 @@ import time
 import pytest
 from fuzz.grammar import GRAMMARS, Grammar, Shape, spelled
 
-SHORT, LONG = 12_000, 120_000
+SHORT, LONG = 6_000, 60_000
 SLOWER = 30  # times, for ten times the length: a quadratic parser takes a hundred
 AT_ONCE = 0.1  # seconds that say nothing: a quadratic parser takes longer
 
