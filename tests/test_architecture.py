@@ -153,10 +153,19 @@ def nodes(path: Path) -> dict[type[ast.AST], list[Any]]:
     found: dict[type[ast.AST], list[Any]] = {
         kind: [] for kind in (ast.Import, ast.ImportFrom, ast.ClassDef, ast.ExceptHandler)
     }
-    for node in ast.walk(tree(path)):
+    for node in statements(tree(path)):
         if type(node) in found:
             found[type(node)].append(node)
     return found
+
+
+def statements(node: ast.AST) -> Iterator[ast.AST]:
+    """Return the statements within a node, and what handles errors among them; no expressions,
+    which are most of a file."""
+    for field in ("body", "handlers", "orelse", "finalbody", "cases"):
+        for each in getattr(node, field, ()):
+            yield each
+            yield from statements(each)
 
 
 @cache

@@ -175,8 +175,8 @@ def readers() -> set[Path]:
     for path in FUZZ.glob("*.py"):
         for node in ast.walk(ast.parse(path.read_text("utf-8"))):
             if isinstance(node, ast.ImportFrom) and (node.module or "").startswith("yarpy."):
-                file = SOURCE.joinpath(*str(node.module).split(".")[1:])
-                found |= {file.with_suffix(".py")} & {*SOURCE.rglob("*.py")}
+                file = SOURCE.joinpath(*str(node.module).split(".")[1:]).with_suffix(".py")
+                found |= {file} if file.is_file() else set()
     return found
 
 
