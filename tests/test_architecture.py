@@ -54,6 +54,7 @@ BESIDE = {
     ("threads", "scope"),
     ("linger", "fork"),
     ("linger", "log"),
+    ("linger", "platform"),
     ("link", "monitors"),
     ("link", "qos"),
     ("monitors", "qos"),

@@ -8,7 +8,7 @@ them and the system would end the process: a handler of ours is set when the fir
 the main thread, and taken back when the last one closes there. It closes what is open, in a thread
 of its own, since the frame beneath may hold any lock; then the signal ends the process as it would
 have without us. The main thread hears of a signal; code outside Python that does not return keeps
-it waiting.
+it waiting. On Windows the end of the console, and Ctrl-Break, are told by it instead.
 """
 
 from __future__ import annotations
@@ -26,6 +26,7 @@ from typing import Final
 
 from yarpy import fork
 from yarpy.log import logger
+from yarpy.platform import console
 
 SETTING: Final = "YARPY_LINGER"
 LINGER: Final = 1.0  # seconds
@@ -124,6 +125,7 @@ def _begin(process: int) -> None:
     if not _begun:
         atexit.register(end)
         fork.after_in_child(_open.clear)
+        console.at_end(_end_by_console)
     _begun.add(process)
     multiprocessing = sys.modules.get("multiprocessing.process")
     if multiprocessing is not None and multiprocessing.parent_process() is not None:
@@ -151,6 +153,12 @@ def _hear_no_more() -> None:
     for number in _signals:
         if signal.getsignal(number) is _end_by:
             signal.signal(number, signal.SIG_DFL)
+
+
+def _end_by_console() -> None:
+    """Close what is open, unless the program has a handler of its own for that."""
+    if signal.getsignal(getattr(signal, "SIGBREAK", signal.SIGTERM)) is signal.SIG_DFL:
+        _end_all()
 
 
 def _end_by(number: int, frame: FrameType | None) -> None:

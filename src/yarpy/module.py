@@ -24,8 +24,9 @@
 Rules. `configure` runs first, `close` last, whatever happens between them, except where `configure`
 returned False or raised. A module with a name opens `NAME/rpc`, which answers what `respond`
 returns, and knows `help` and `quit`; and `NAME/quit`, by which `yarpy terminate NAME` ends it.
-SIGINT and SIGTERM end it in good order; the fourth of them ends the process at once. `update` is
-called every `period` seconds by `yarpy.clock`, and what one call takes too long is not caught up.
+SIGINT and SIGTERM, on Windows Ctrl-Break, end it in good order; the fourth of them ends the process
+at once. `update` is called every `period` seconds by `yarpy.clock`, and what one call takes too
+long is not caught up.
 """
 
 from __future__ import annotations
@@ -56,6 +57,10 @@ log = logger("yarpy.module")
 QUIT: Final = frozenset(("quit", "exit", "bye"))
 #: Signals after which the process no longer waits for the module to end.
 SIGNALS: Final = 3
+#: Signals that end a module; that of Ctrl-Break is how a program of Windows is asked to.
+ENDING: Final = tuple(
+    getattr(signal, name) for name in ("SIGINT", "SIGTERM", "SIGBREAK") if hasattr(signal, name)
+)
 
 
 class Module:
@@ -206,7 +211,7 @@ def _signals(stop: Callable[[], None]) -> Iterator[None]:
             os._exit(128 + number)
         Thread(target=stop, name="yarpy module stop", daemon=True).start()
 
-    before = {number: signal.signal(number, handle) for number in (signal.SIGINT, signal.SIGTERM)}
+    before = {number: signal.signal(number, handle) for number in ENDING}
     try:
         yield
     finally:

@@ -9,12 +9,11 @@ follow YARP's classes (LOW AF11, NORM 0, HIGH AF42, CRIT VA); the TOS byte is DS
 
 from __future__ import annotations
 
-import os
-import sys
 from dataclasses import dataclass
 from typing import Final
 
 from yarpy.errors import LocalProtocolError
+from yarpy.platform import scheduling
 
 DSCP: Final[dict[str, int]] = {
     **{f"CS{n}": 8 * n for n in range(8)},
@@ -162,16 +161,17 @@ def schedule(thread: int, sched: Sched) -> None:
 
     Raises LocalProtocolError when the kernel refuses, or has no such thing.
     """
-    if sys.platform != "linux" or not hasattr(os, "sched_setscheduler"):
-        raise LocalProtocolError("this system does not let a program set thread priorities")
     policy = max(sched.policy, 0)
     priority = max(sched.priority, 0) if policy else 0
     try:
-        os.sched_setscheduler(thread, policy, os.sched_param(priority))
+        scheduling.schedule(thread, policy, priority)
+    except NotImplementedError as error:
+        raise LocalProtocolError(
+            "this system does not let a program set thread priorities"
+        ) from error
     except PermissionError as error:
         raise LocalProtocolError(
-            "the system refuses real-time scheduling: run as root, grant CAP_SYS_NICE, or raise "
-            "the rtprio limit (ulimit -r)"
+            f"the system refuses real-time scheduling: {scheduling.RIGHTS}"
         ) from error
     except OSError as error:
         raise LocalProtocolError(
@@ -181,9 +181,7 @@ def schedule(thread: int, sched: Sched) -> None:
 
 def scheduled(thread: int) -> Sched:
     """Return the scheduling that the kernel really gives a thread; -1 where it does not say."""
-    if sys.platform != "linux" or not hasattr(os, "sched_getscheduler"):
-        return Sched()
     try:
-        return Sched(os.sched_getscheduler(thread), os.sched_getparam(thread).sched_priority)
+        return Sched(*scheduling.scheduled(thread))
     except OSError:
         return Sched()

@@ -26,6 +26,7 @@ from typing import Final, ParamSpec, Self, TypeVar
 from weakref import ReferenceType, ref
 
 from yarpy.errors import PortClosed, Timeout, YarpError
+from yarpy.platform.waiting import acquire
 
 A = TypeVar("A")
 P = ParamSpec("P")
@@ -325,10 +326,7 @@ class Waiter:
             if scope.ended:
                 self.wake()
         try:
-            if limit is None:
-                self._lock.acquire()
-            else:
-                self._lock.acquire(timeout=max(0.0, min(limit - time.monotonic(), 1e6)))
+            acquire(self._lock, limit)
         finally:
             if scope is not None:
                 scope.wakers.pop(id(self), None)

@@ -2,16 +2,16 @@
 
 from __future__ import annotations
 
-import os
 import socket
 from collections.abc import Iterator
 
 import pytest
-from support.system import NO_SCHEDULING
+from support.system import NO_MARKS, NO_SCHEDULING
 from support.wait import wait_until
 
 import yarpy
 from yarpy.link import qos
+from yarpy.platform import scheduling
 from yarpy.qos import Qos, Sched
 
 schedules = pytest.mark.skipif(bool(NO_SCHEDULING), reason=NO_SCHEDULING)
@@ -33,18 +33,14 @@ def refusing(monkeypatch: pytest.MonkeyPatch) -> None:
     def refuse(*_: object) -> None:
         raise PermissionError
 
-    monkeypatch.setattr(os, "sched_setscheduler", refuse)
+    monkeypatch.setattr(scheduling, "schedule", refuse)
 
 
 @pytest.fixture
 def asked(monkeypatch: pytest.MonkeyPatch) -> list[tuple[int, int, int]]:
     """What the system is asked for, by a process that may have it."""
     seen: list[tuple[int, int, int]] = []
-    monkeypatch.setattr(
-        os,
-        "sched_setscheduler",
-        lambda tid, policy, param: seen.append((tid, policy, param.sched_priority)),
-    )
+    monkeypatch.setattr(scheduling, "schedule", lambda *what: seen.append(what))
     return seen
 
 
@@ -55,6 +51,7 @@ def test_nothing_is_set_at_first(ports) -> None:
     assert in_.inputs[0].qos == Qos("SCHED_OTHER", 0, "CS0")
 
 
+@pytest.mark.skipif(bool(NO_MARKS), reason=NO_MARKS)
 @pytest.mark.parametrize("packets", ["HIGH", "AF12", 3])
 def test_packets_of_either_side(ports, packets) -> None:
     for connection in (ports[0].outputs[0], ports[1].inputs[0]):
@@ -64,20 +61,30 @@ def test_packets_of_either_side(ports, packets) -> None:
         assert sock.getsockopt(socket.IPPROTO_IP, socket.IP_TOS) == Qos(packets=packets).tos
 
 
+@pytest.mark.skipif(not NO_MARKS, reason="this system marks packets as a program wants")
+@pytest.mark.parametrize("carrier", ["tcp", "udp"])
+def test_windows_says_who_marks_packets_there(ports, carrier) -> None:
+    out, _ = ports
+    out.connect("/in", carrier)
+    with pytest.raises(yarpy.LocalProtocolError, match=r"New-NetQosPolicy .* -DSCPAction 36"):
+        out.outputs[0].qos = Qos(packets="HIGH")
+    assert out.outputs[0].qos.packets == "CS0"
+
+
 @schedules
 def test_output_that_is_scheduled_gets_its_thread(ports, asked) -> None:
     out, in_ = ports
     out.outputs[0].qos = Qos("SCHED_FIFO", 30)
     link = out._hub.outputs.links[0]
     assert link.thread is not None
-    assert asked == [(link.thread.native_id, os.SCHED_FIFO, 30)]
+    assert asked == [(link.thread.native_id, 1, 30)]
     for number in range(10):
         assert out.write([number]) == 1
         assert in_.read(timeout=5).value == [number]
     out.outputs[0].qos = Qos(priority=31)  # the policy stays
-    assert asked[-1] == (link.thread.native_id, os.SCHED_FIFO, 31)
+    assert asked[-1] == (link.thread.native_id, 1, 31)
     out.outputs[0].qos = Qos("SCHED_OTHER")
-    assert asked[-1] == (link.thread.native_id, os.SCHED_OTHER, 0)
+    assert asked[-1] == (link.thread.native_id, 0, 0)
 
 
 @schedules
@@ -88,7 +95,7 @@ def test_input_that_is_scheduled_is_read_by_its_thread(ports, asked) -> None:
         in_.read(timeout=5)
     in_.inputs[0].qos = Qos("SCHED_RR", 7)
     link = in_.inputs[0]._link
-    assert asked == [(link.thread.native_id, os.SCHED_RR, 7)]
+    assert asked == [(link.thread.native_id, 2, 7)]
     for number in range(20):
         out.write([number])
         assert in_.read(timeout=5).value == [number]
@@ -99,7 +106,7 @@ def test_input_that_is_scheduled_is_read_by_its_thread(ports, asked) -> None:
 def test_refusal_says_what_to_do_and_changes_nothing(ports, refusing) -> None:
     out, in_ = ports
     for connection in (out.outputs[0], in_.inputs[0]):
-        with pytest.raises(yarpy.LocalProtocolError, match="CAP_SYS_NICE"):
+        with pytest.raises(yarpy.LocalProtocolError, match=scheduling.RIGHTS[:6]):
             connection.qos = Qos("SCHED_FIFO", 30)
         assert connection._link.sched == Sched()
     out.write([1])
@@ -123,7 +130,7 @@ def test_other_carriers(carrier) -> None:
         out.connect("/in", carrier)
         wait_until(lambda: in_.inputs)
         marked = out.outputs[0]
-        if carrier == "udp":
+        if carrier == "udp" and not NO_MARKS:
             marked.qos = Qos(packets="CRIT")
             assert marked.qos.packets == "VA"
         else:

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 import pytest
-from support.system import NO_SCHEDULING
+from support.system import NO_MARKS, NO_SCHEDULING
 from support.wait import wait_until
 
 import yarpy
@@ -23,7 +23,7 @@ def names() -> Iterator[yarpy.LocalNames]:
         yield found
 
 
-@pytest.mark.skipif(bool(NO_SCHEDULING), reason=NO_SCHEDULING)
+@pytest.mark.skipif(bool(NO_SCHEDULING or NO_MARKS), reason=NO_SCHEDULING or NO_MARKS)
 def test_both_ends(names: yarpy.LocalNames) -> None:
     assert qos.granted("/out", "/in", names) == (
         Qos(packets="CS0"),
@@ -48,13 +48,12 @@ def test_no_such_port_or_connection(names: yarpy.LocalNames) -> None:
             qos.grant(source, target, sender=Qos(packets="HIGH"), names=names)
 
 
-@pytest.mark.skipif(bool(NO_SCHEDULING), reason=NO_SCHEDULING)
 def test_refusal_names_its_reason(names: yarpy.LocalNames, monkeypatch: pytest.MonkeyPatch) -> None:
     def refuse(*_: object) -> None:
         raise PermissionError
 
-    monkeypatch.setattr("os.sched_setscheduler", refuse)
-    with pytest.raises(yarpy.LocalProtocolError, match=r'"/in" does not set.*CAP_SYS_NICE'):
+    monkeypatch.setattr("yarpy.platform.scheduling.schedule", refuse)
+    with pytest.raises(yarpy.LocalProtocolError, match=r'"/in" does not set.* refuses real-time'):
         qos.grant("/out", "/in", receiver=Qos("SCHED_FIFO", 10), names=names)
 
 

@@ -15,7 +15,12 @@ NO_ROOT: Final = (
 )
 NO_MEMFD: Final = "" if hasattr(os, "memfd_create") else "only Linux has memory with a descriptor"
 NO_SCHEDULING: Final = (
-    "" if sys.platform == "linux" else "only Linux schedules a thread of its own in real time"
+    ""
+    if sys.platform in ("linux", "win32")
+    else "this system does not let a program say which of its threads runs first"
+)
+NO_MARKS: Final = (
+    "" if sys.platform != "win32" else "Windows marks packets by its administrator's policies alone"
 )
 NO_TAKEN: Final = "" if sys.platform == "linux" else "only Linux tells how much a peer has taken"
 NO_LINKS: Final = "" if sys.platform != "win32" else "on Windows it takes a right to make a link"

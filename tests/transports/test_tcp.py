@@ -10,6 +10,7 @@ import time
 
 import pytest
 from support.port import free_port
+from support.system import NO_MARKS
 from support.wait import HANG, wait_until
 
 from yarpy.errors import AddressError
@@ -63,6 +64,7 @@ def test_little_is_under_way_on_one_computer(size: int) -> None:
     listener.release()
 
 
+@pytest.mark.skipif(bool(NO_MARKS), reason=NO_MARKS)
 def test_dscp_is_set_on_the_socket() -> None:
     listener = TcpListener()
     near = dial("127.0.0.1", listener.port)

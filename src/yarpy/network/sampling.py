@@ -12,6 +12,7 @@ An answer has a size limit. What is asked changes nothing.
 
 from __future__ import annotations
 
+import sys
 import time
 from collections.abc import Iterable, Iterator
 from concurrent.futures import ThreadPoolExecutor
@@ -74,7 +75,7 @@ class Line:
         route = Route(urgent or "admin", contact.name or f"/{contact.address}", "tcp")
         driver, carrier = greet(contact, route, key=secret(), limit=SAMPLE_ANSWER, timeout=timeout)
         self._link = Outbound(driver, carrier)
-        if urgent:
+        if urgent and sys.platform != "win32":  # which marks no packets for a program
             driver.transport.set_dscp(tos_of("CRIT"))
             self.ask("prop", "set", urgent, ["qos", [["tos", tos_of("CRIT")]]], timeout=timeout)
 

@@ -3,11 +3,13 @@
 Rules: what is taken is in the reader's list in the same call into C, so that an exception out of a
 signal handler loses nothing. A wait ends in time: `SimpleQueue.get` of Python 3.11 and 3.12 waits
 for ever where a signal handler is still busy at the moment when the time is over, so a wait with a
-limit is one for a lock here. Whoever puts something in wakes all of those, who look themselves.
+limit is one for a lock here; on Windows, where `get` lets no handler run, every wait is. Whoever
+puts something in wakes all of those, who look themselves.
 """
 
 from __future__ import annotations
 
+import math
 import sys
 import time
 from _thread import LockType, allocate_lock, get_ident
@@ -45,16 +47,18 @@ class TimedQueue(Generic[T]):
         """Move the next item to the end of a list. Raises Empty once `timeout` seconds are over;
         None waits for ever."""
         get = self._items.get
-        if timeout is None or (sys.version_info >= (3, 13) and timeout > 0.0):
+        if sys.platform != "win32" and (
+            timeout is None or (sys.version_info >= (3, 13) and timeout > 0.0)
+        ):
             into.extend(map(get, (True,), (timeout,)))
             return
         try:
             into.extend(map(get, (False,)))
             return
         except Empty:
-            if timeout <= 0.0:
+            if timeout is not None and timeout <= 0.0:
                 raise
-        until = time.monotonic() + timeout
+        until = math.inf if timeout is None else time.monotonic() + timeout
         lock = allocate_lock()
         lock.acquire()
         try:

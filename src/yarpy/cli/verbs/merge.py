@@ -24,6 +24,7 @@ import yarpy
 from yarpy.cli.output import print_line
 from yarpy.cli.ports import hear_from, open_port
 from yarpy.cli.stderr import complain
+from yarpy.platform import waiting
 
 OUTPUT = "/portsMerge/o0"
 WORKER = "/portsMerge/i"
@@ -82,5 +83,5 @@ def command(
                 complain(str(error))
                 return FAILED
         print_line(f"Ready. Output goes to {output}")
-        threading.Event().wait()
+        waiting.wait()
     return 0

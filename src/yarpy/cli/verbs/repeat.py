@@ -12,6 +12,7 @@ import click
 import yarpy
 from yarpy.cli.ports import open_port
 from yarpy.cli.relay import forwardable
+from yarpy.platform import waiting
 
 
 @click.command()
@@ -27,4 +28,4 @@ def command(port: str) -> None:
 
     with open_port(yarpy.Port, port, callback=send_on) as repeater:
         ready.set()
-        threading.Event().wait()
+        waiting.wait()

@@ -39,6 +39,7 @@ from yarpy.cli.signals import Interrupted
 from yarpy.cli.stderr import warn
 from yarpy.errors import AddressError
 from yarpy.log import readable
+from yarpy.platform import waiting
 from yarpy.registry import delegates
 
 if TYPE_CHECKING:
@@ -322,7 +323,7 @@ def _serve(
         if web is not None:
             say(f"Files of {web} are shown at {where}web/")
         say("Ok. Ready!")
-        while not threading.Event().wait(HAPPY):
+        while not waiting.wait(seconds=HAPPY):
             say("Name server running happily")
     finally:
         service.close()

@@ -264,7 +264,7 @@ def dial(
             replaced = [old for old in hub.outputs.links if old.route.target == target]
             for old in replaced:
                 close_output(hub, old)
-        started = time.monotonic()
+        started = time.perf_counter()
         try:
             _check(hub, kind, spec)
             spec = open_output(hub, contact, target, spec, lost)

@@ -59,7 +59,8 @@ class _Lost:
     hub: Hub
     route: Route
     incoming: bool
-    since: float = field(default_factory=time.monotonic)
+    # On Windows time.monotonic goes on every 15 ms, which would not tell what was first.
+    since: float = field(default_factory=time.perf_counter)
     pause: float = TICK
     due: float = 0.0
     timeout: float = SILENCE  # twice as long after each one: a port that is alive may be slow
@@ -177,7 +178,7 @@ class Reconnector:
         self, hub: Hub, name: str, incoming: bool | None = None, before: float = math.inf
     ) -> bool:
         """Somebody takes the connection to or from `name` in hand, or the one of these that
-        `incoming` tells, if it was lost `before` that time (of time.monotonic); whether it was
+        `incoming` tells, if it was lost `before` that time (of time.perf_counter); whether it was
         being tried again."""
 
         def meant(item: _Lost) -> bool:
@@ -252,7 +253,7 @@ class Reconnector:
 
     def _dial(self, lost: list[_Lost]) -> None:
         """Begin what is due; of those that want the same port, one at a time."""
-        now = time.monotonic()
+        now = time.perf_counter()
         for item in lost:
             if item.due <= now and not item.hub.life.closing:
                 self._attempts.begin(_peer(item), partial(self._attempt, item))
@@ -275,7 +276,7 @@ class Reconnector:
         except (YarpError, OSError):
             pass  # not yet
         finally:
-            now = time.monotonic()
+            now = time.perf_counter()
             waited = now - item.since > INPUT_TIMEOUT
             if done or (waited and item.incoming and not _is_pulled(item.route)):
                 with self._lock:
@@ -294,7 +295,7 @@ class Reconnector:
         if contact is None or not probe.is_alive(contact, hub.key):
             item.seen_gone = True
             return False
-        if not item.seen_gone and time.monotonic() - item.since < CALM:
+        if not item.seen_gone and time.perf_counter() - item.since < CALM:
             return False  # it is still there: give it the time to dial us by itself
         listed = probe.ask(contact, [Vocab("list"), Vocab("out")], secret_=hub.key)
         if hub.name in listed:

@@ -24,6 +24,7 @@ from yarpy.cli import log
 from yarpy.cli.output import print_line
 from yarpy.cli.signals import Interrupted
 from yarpy.cli.stderr import complain, warn
+from yarpy.platform import waiting
 
 if TYPE_CHECKING:
     from yarpy.kits.launch.robot.alone import Alone
@@ -144,7 +145,7 @@ def _run(opened: Alone) -> int:
                 print_line(f"{opened.device} is served as {opened.name} ({opened.server})")
             else:
                 print_line(f"{opened.device} is open")
-            over.wait()
+            waiting.wait(over)
         except Interrupted:
             pass
     return 0

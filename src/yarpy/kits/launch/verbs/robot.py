@@ -27,6 +27,7 @@ from yarpy.cli import log
 from yarpy.cli.output import print_line
 from yarpy.cli.signals import Interrupted
 from yarpy.cli.stderr import complain, warn
+from yarpy.platform import waiting
 
 if TYPE_CHECKING:
     from yarpy.kits.launch.document.problem import Problem
@@ -125,7 +126,7 @@ def _run(description: Description, keep_going: bool) -> int:
                 print_line(
                     f"{description.name} runs: {states.count('open')} of {len(states)} devices"
                 )
-                over.wait()
+                waiting.wait(over)
         except Interrupted:
             started = True  # somebody wanted it to end
         _later(robot)

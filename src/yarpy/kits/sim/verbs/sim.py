@@ -13,7 +13,6 @@ Exit codes: 0 ended by a signal; 1 the names are in use, the file is no model, M
 
 from __future__ import annotations
 
-import threading
 from typing import TYPE_CHECKING
 
 import click
@@ -21,6 +20,7 @@ import click
 from yarpy.cli import log, signals
 from yarpy.cli.output import print_line
 from yarpy.cli.stderr import warn
+from yarpy.platform import waiting
 from yarpy.registry import robots
 
 if TYPE_CHECKING:
@@ -98,7 +98,7 @@ def command(
                 click.get_current_context().with_resource(shown)
     try:
         print_line(f"{opened.name} is ready: {' '.join(opened.ports)}")
-        threading.Event().wait()
+        waiting.wait()
     except signals.Interrupted:
         pass
     return 0

@@ -15,7 +15,6 @@ Exit codes: 1 no name server answers; otherwise it runs until a signal.
 from __future__ import annotations
 
 import os
-import threading
 
 import click
 
@@ -23,6 +22,7 @@ import yarpy
 from yarpy.cli.browser import show_page
 from yarpy.cli.ports import open_another, open_port
 from yarpy.cli.service import server
+from yarpy.platform import waiting
 from yarpy.transports.bind import SETTING
 
 NAME = "/dash"
@@ -46,5 +46,5 @@ def command(name: str | None, no_browser: bool, lan: bool) -> int:
     with opening(yarpy.Port, name or NAME, callback=lambda message: None) as port:
         Dash(port, names)
         show_page(port, not no_browser)
-        threading.Event().wait()
+        waiting.wait()
     return 0

@@ -9,8 +9,6 @@ below it is shown, of yarpy or of C++, also when the robot starts later.
 
 from __future__ import annotations
 
-import threading
-
 import click
 
 import yarpy
@@ -18,6 +16,7 @@ from yarpy.cli.browser import show_page
 from yarpy.cli.ports import open_another, open_port
 from yarpy.cli.service import server
 from yarpy.cli.stderr import warn
+from yarpy.platform import waiting
 
 NAME = "/panel"
 
@@ -40,5 +39,5 @@ def command(robot: str, name: str | None, no_browser: bool) -> int:
         show_page(port, not no_browser)
         if missing:
             warn(missing)
-        threading.Event().wait()
+        waiting.wait()
     return 0

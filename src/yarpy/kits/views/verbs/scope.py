@@ -11,7 +11,6 @@ signal.
 
 from __future__ import annotations
 
-import threading
 from functools import partial
 
 import click
@@ -20,6 +19,7 @@ import yarpy
 from yarpy.cli.browser import show_page
 from yarpy.cli.ports import open_another, open_port
 from yarpy.cli.source import Source, also_said
+from yarpy.platform import waiting
 
 NAME = "/scope"
 
@@ -72,5 +72,5 @@ def command(
         for source in ports:
             Source(port, source, carrier, also_said(partial(scope.wait_for, source)))
         show_page(port, not no_browser)
-        threading.Event().wait()
+        waiting.wait()
     return 0

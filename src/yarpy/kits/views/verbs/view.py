@@ -14,7 +14,6 @@ Exit codes: 1 a port cannot be opened, or a source cannot be one; otherwise it r
 from __future__ import annotations
 
 import os
-import threading
 import time
 from contextlib import ExitStack, suppress
 from pathlib import Path
@@ -29,6 +28,7 @@ from yarpy.cli.ports import open_port
 from yarpy.cli.source import Source, also_said
 from yarpy.cli.stderr import warn
 from yarpy.errors import LocalProtocolError
+from yarpy.platform import waiting
 from yarpy.wire.message import Message
 
 if TYPE_CHECKING:
@@ -110,7 +110,7 @@ def command(
         for picture, source in zip(pictures, sources, strict=False):
             Source(picture.port, source, carrier, also_said(picture.wait_for))
         show_page(opened[0], not no_browser)
-        threading.Event().wait()
+        waiting.wait()
     return 0
 
 
@@ -172,7 +172,7 @@ def look_back(
             print_line(f"and by Foxglove at {page}")
         if browser:
             open_page(page)
-        threading.Event().wait()
+        waiting.wait()
 
 
 def _beside(first: FileSource, path: str, offset: float) -> BesideSource:
@@ -223,7 +223,7 @@ def in_rerun(words: tuple[str, ...], carrier: str, window: bool) -> int:
         following = Subscriptions(port, PortSelection(words, every=not words), carrier, tell=warn)
         print_line(f"what {port.name} hears is shown in Rerun")
         try:
-            threading.Event().wait()
+            waiting.wait()
         finally:
             following.close()
     return 0

@@ -23,6 +23,7 @@ import click
 
 from yarpy.cli.output import print_line
 from yarpy.errors import YarpError
+from yarpy.platform import waiting
 
 if TYPE_CHECKING:
     from yarpy.peers.ros.message.library import Library
@@ -80,7 +81,6 @@ def command(
 
 
 def _serve(name: str, library: Library) -> int:
-    import threading
 
     from yarpy.cli import log, signals
     from yarpy.peers.ros.type_server import TypeServer
@@ -91,7 +91,7 @@ def _serve(name: str, library: Library) -> int:
         click.get_current_context().call_on_close(server.close)
     print_line(f"{server.name} answers `twiddle TYPE` and `raw TYPE`")
     try:
-        threading.Event().wait()
+        waiting.wait()
     except signals.Interrupted:
         pass
     return 0

@@ -19,6 +19,7 @@ import click
 from yarpy.cli.output import print_line
 from yarpy.cli.signals import Interrupted
 from yarpy.cli.stderr import warn
+from yarpy.platform import waiting
 
 
 @click.command()
@@ -48,6 +49,5 @@ def command(where: tuple[str, ...], connect: tuple[str, ...], file: str | None) 
 
 
 def _wait() -> None:
-    import threading
 
-    threading.Event().wait()
+    waiting.wait()

@@ -1,0 +1,55 @@
+"""A console that ends, or wants the program to."""
+
+from __future__ import annotations
+
+import os
+import subprocess
+import sys
+
+import pytest
+from support.wait import HANG
+
+import yarpy
+
+# What the system does: a thread of its own calls what was registered, and ends the process. (Under
+# wine nobody can send Ctrl-Break to a program without a terminal.)
+PORT = """
+import os, signal, sys, threading, time, yarpy
+from yarpy.platform import console
+
+def ends():
+    sys.stdin.readline()
+    console._told[0](1)
+    os._exit(5)
+
+threading.Thread(target=ends, daemon=True).start()
+port = yarpy.Port("/asked/to/end")
+{before}
+print("open", flush=True)
+{then}
+"""
+WAYS = {
+    "it sleeps": ("", "time.sleep(600)"),
+    "it reads": ("", "port.read()"),
+    "it has a handler of its own": ("signal.signal(signal.SIGBREAK, print)", "time.sleep(600)"),
+}
+
+
+@pytest.mark.skipif(sys.platform != "win32", reason="only Windows asks a program by its console")
+@pytest.mark.parametrize("way", WAYS)
+def test_a_program_of_ports_gives_its_name_back(way: str) -> None:
+    before, then = WAYS[way]
+    with yarpy.NameServer() as server:
+        with subprocess.Popen(
+            [sys.executable, "-c", PORT.format(before=before, then=then)],
+            stdin=subprocess.PIPE,
+            stdout=subprocess.PIPE,
+            env={**os.environ, **server.environment},
+        ) as program:
+            assert program.stdin is not None and program.stdout is not None
+            assert program.stdout.readline().strip() == b"open"
+            assert yarpy.query("/asked/to/end") is not None
+            program.stdin.write(b"\n")
+            program.stdin.flush()
+            assert program.wait(HANG) == 5
+        assert (yarpy.query("/asked/to/end") is None) == (way != "it has a handler of its own")

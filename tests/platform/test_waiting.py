@@ -1,0 +1,64 @@
+"""Waits of the main thread, and the signals that end them."""
+
+from __future__ import annotations
+
+import signal
+import sys
+import threading
+import time
+from _thread import allocate_lock
+
+import pytest
+from support.wait import HANG, inside
+
+from yarpy.cli.signals import _wake_main_thread
+from yarpy.platform import waiting
+
+
+class Asked(Exception):
+    """What a signal handler raises."""
+
+
+def test_a_lock_is_taken_or_the_time_is_over() -> None:
+    lock = allocate_lock()
+    assert waiting.acquire(lock)
+    assert not waiting.acquire(lock, time.monotonic() - 1)
+    began = time.monotonic()
+    assert not waiting.acquire(lock, began + 3 * waiting.SLICE)
+    assert time.monotonic() >= began + 2.9 * waiting.SLICE
+    thread = inside("acquire", lock.release)
+    assert waiting.acquire(lock, time.monotonic() + HANG)
+    thread.join()
+
+
+def test_an_event_is_set_or_the_time_is_over() -> None:
+    event = threading.Event()
+    assert not waiting.wait(event, 0.0)
+    began = time.monotonic()
+    assert not waiting.wait(seconds=3 * waiting.SLICE)
+    assert time.monotonic() >= began + 2.9 * waiting.SLICE
+    thread = inside("wait", event.set)
+    assert waiting.wait(event)
+    thread.join()
+
+
+@pytest.mark.parametrize("number", ["SIGINT", "SIGTERM", "SIGBREAK"])
+@pytest.mark.parametrize("what", ["lock", "event"])
+def test_a_signal_ends_it(number: str, what: str) -> None:
+    if not hasattr(signal, number):
+        pytest.skip(f"{sys.platform} has no {number}")
+
+    def asked(*_: object) -> None:
+        raise Asked
+
+    before = signal.signal(getattr(signal, number), asked)
+    lock = allocate_lock()
+    lock.acquire()
+    name = "acquire" if what == "lock" else "wait"
+    thread = inside(name, lambda: _wake_main_thread(getattr(signal, number)))
+    try:
+        with pytest.raises(Asked):
+            waiting.acquire(lock) if what == "lock" else waiting.wait()
+    finally:
+        thread.join()
+        signal.signal(getattr(signal, number), before)
