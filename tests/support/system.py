@@ -19,6 +19,9 @@ NO_SCHEDULING: Final = (
     if sys.platform in ("linux", "win32")
     else "this system does not let a program say which of its threads runs first"
 )
+NO_POLICIES: Final = (
+    "" if sys.platform == "linux" else "only Linux has policies for threads; Windows has levels"
+)
 NO_MARKS: Final = (
     "" if sys.platform != "win32" else "Windows marks packets by its administrator's policies alone"
 )
