@@ -30,7 +30,10 @@ print("open", flush=True)
 """
 WAYS = {
     "it sleeps": ("", "time.sleep(600)"),
-    "it reads": ("", "port.read()"),
+    "it reads": (
+        "",
+        "try: port.read()\nexcept yarpy.PortClosed: time.sleep(600)",
+    ),
     "it has a handler of its own": ("signal.signal(signal.SIGBREAK, print)", "time.sleep(600)"),
 }
 
