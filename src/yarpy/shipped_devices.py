@@ -42,6 +42,7 @@ _EXTRAS: Final = {
     "opencv_grabber": "vision",
     "portaudioPlayer": "audio",
     "portaudioRecorder": "audio",
+    "realsense2": "realsense",
     "witmotionImu": "hardware",
     "xsensImu": "hardware",
 }
@@ -74,8 +75,10 @@ _DEVICES: Final[dict[str, str]] = {
     "portaudioRecorder": "hardware.portaudio:recorder",
     "rangefinder2D_nws_yarp": "wrapper:Laser",
     "rosControlBoard": "hardware.topics:ros_board",
+    "realsense2": "hardware.realsense:realsense",
     "remotecontrolboardremapper": "control_board.remapper:remote_remapper",
     "test_grabber": "simulated.plugin:camera",
+    "usbCamera": "hardware.v4l2:usb_camera",
     "virtualAnalogServer": "analog.plugin:VirtualAnalog",
     "witmotionImu": "hardware.imu:witmotion_imu",
     "xsensImu": "hardware.imu:xsens_imu",

@@ -80,6 +80,7 @@ _OTHERS: Final = {
     "opencv_grabber": "a camera or film of OpenCV: served by frameGrabber_nws_yarp",
     "portaudioPlayer": "the loudspeaker of this computer: served by audioPlayerWrapper",
     "portaudioRecorder": "the microphone of this computer: served by audioRecorder_nws_yarp",
+    "realsense2": "a RealSense camera: served by RGBDSensor_nws_yarp",
     "remotecontrolboardremapper": "the joints of boards of other programs, as one board",
     "robotDescriptionStorage": "a list of devices: served by robotDescription_nws_yarp",
     "rosControlBoard": "the joints of a robot of ROS: served by controlBoard_nws_yarp",
@@ -88,6 +89,7 @@ _OTHERS: Final = {
     "simulatedInertial": "inertial unit of the simulated iCub: attach simulatedHead",
     "witmotionImu": "inertial unit of WitMotion on a line: served by multipleanalogsensorsserver",
     "xsensImu": "MTi of Xsens on a line: served by multipleanalogsensorsserver",
+    "usbCamera": "a camera of Linux, without OpenCV: served by frameGrabber_nws_yarp",
     "virtualAnalogServer": "torques that another program estimates, for what is attached",
     "test_grabber": "fakeFrameGrabber, as older YARP called it",
 }

@@ -202,6 +202,7 @@ def server_of(device: object, kind: str = "") -> str:
         ("analogServer", ("channels",)),
         ("controlBoard_nws_yarp", ("axis_names",)),
         ("frameGrabber_nws_yarp", ("image",)),
+        ("RGBDSensor_nws_yarp", ("depth",)),
         ("rangefinder2D_nws_yarp", ("ranges",)),
         ("battery_nws_yarp", ("charge",)),
         ("multipleanalogsensorsserver", KINDS),

@@ -19,7 +19,7 @@ from support.ros_graph import RosGraph, ros_graph
 from support.wait import HANG, wait_until
 
 import yarpy
-from yarpy import Property, Timeout
+from yarpy import Property, Timeout, ros2
 from yarpy.kits.devices import ControlBoard, ControlBoardServer
 from yarpy.kits.devices.closeable import Closeable
 from yarpy.kits.devices.hardware import topics
@@ -204,9 +204,11 @@ def test_a_robot_of_ros_2(names: LocalNames, monkeypatch: pytest.MonkeyPatch) ->
     monkeypatch.setenv("CYCLONEDDS_URI", LOCAL)
     monkeypatch.delenv("ROS_DOMAIN_ID", raising=False)
     monkeypatch.setattr(topics, "FIRST", HANG)
+    monkeypatch.setattr(topics, "CONNECTED", HANG)
     states, commands = (f"/n{os.getpid()}_{what}" for what in ("states", "commands"))
     program = [sys.executable, "-P", str(Path(dds_robot.__file__)), states, commands]
     with (
+        ros2.Node(f"/n{os.getpid()}", rmw="dds"),  # takes part already: that takes a while
         Process(program) as peer,
         TopicBoard(
             f"ros2+dds:/{states}~sensor_msgs/msg/JointState",

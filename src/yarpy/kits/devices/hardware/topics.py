@@ -34,7 +34,8 @@ from yarpy.port.port import BufferedPort
 from yarpy.wire.message import Message
 
 FORMS: Final = ("trajectory", "positions")
-FIRST: Final = 5.0  # seconds for a connection, and for the first message with all joints
+CONNECTED: Final = 10.0  # seconds for a connection
+FIRST: Final = 5.0  # seconds for the first message with all joints
 DIRECT: Final = 0.1  # seconds of a trajectory that is there at once
 DONE: Final = 0.5  # degrees or millimetres from its goal, where a joint has arrived
 _SLOWEST: Final = 0.1  # of a reference speed
@@ -81,9 +82,9 @@ class TopicBoard(Closeable):
             own = commands if "@" in commands else f"{local}/commands:o"
             self._out = resources.enter_context(BufferedPort(own, strict=True, names=names))
             if "@" not in states:
-                reader.listen_to(states, timeout=FIRST)
+                reader.listen_to(states, timeout=CONNECTED)
             if "@" not in commands:
-                self._out.connect(commands, timeout=FIRST)
+                self._out.connect(commands, timeout=CONNECTED)
             self.axis_names = self._wait(axis_names)
             self._resources = resources.pop_all()
         sliding = [name in prismatic for name in self.axis_names]

@@ -3,7 +3,8 @@
     yarpy dev --device fakeFrameGrabber --name /cam --width 640
     yarpy dev --device controlBoard_nws_yarp --subdevice myArm --name /arm --period 0.02
     yarpy dev --from arm.ini                        options in a file, groups as [GENERAL]
-    yarpy dev --list                                the types that are installed, and what they are
+    yarpy dev --list                                the types that are installed, and what they are;
+                                                    what is plugged in
 
 Rules: the options are those of C++ yarpdev. A device that comes without a server gets the one for
 its kind. ^C and SIGTERM end it, and so does `quit` at the port NAME/quit (`yarpy terminate NAME`).
@@ -87,10 +88,15 @@ def command(
 def _types() -> int:
     """Print the types that are installed."""
     from yarpy.kits.devices.catalogue import lines
+    from yarpy.kits.devices.hardware.plugged import plugged
 
     print_line("types of devices, for yarpy dev --device TYPE:")
     for one in lines():
         print_line(one)
+    if found := plugged():
+        print_line("plugged in here:")
+        for one in found:
+            print_line(f"  {one}")
     return 0
 
 
