@@ -4,10 +4,10 @@
     yarpy record -a --exclude /log/ --split 1GB --max-files 10
 
 Ports may come later, and come back: they are recorded as soon as they are there. On a terminal a
-table shows how each is doing, and keys pause (space), begin a new file (s), mark a moment (m) and
-stop (q); elsewhere only what is odd is told. So do the words pause, resume, split, mark TEXT,
-status and stop at the port /record/rpc:i (`yarpy rpc`), and its page in a browser, which --page
-opens. ^C and SIGTERM finish the file; what was written can be read even after a kill.
+table shows how each is doing, and keys pause (space), begin a new file (s), mark a moment (m, note,
+Enter) and stop (q); elsewhere only what is odd is told. So do the words pause, resume, split,
+mark TEXT, status and stop at the port /record/rpc:i (`yarpy rpc`), and its page in a browser, which
+--page opens. ^C and SIGTERM finish the file; what was written can be read even after a kill.
 
 Exit codes: 0 recorded, also when ^C or SIGTERM ends it; 1 nothing could be, or it had to stop.
 """
