@@ -433,6 +433,8 @@ def _ros(name: str, library: Library | Library2 | None = None) -> Target:
 
     full = [filled(cls, random.Random(seed)) for seed in range(3)]
     seeds = [b"".join(message.to_ros()) for message in full]
+    if isinstance(library, Library2):  # as other computers and programs spell it
+        seeds += [bytes((0, head)) + seed[2:] for seed in seeds for head in (0, 6, 9)]
     return Target(read, (*seeds, *(b"".join(message.to_wire()) for message in full)))
 
 

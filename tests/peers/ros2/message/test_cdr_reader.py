@@ -87,8 +87,7 @@ def test_arrays_look_at_the_bytes() -> None:
     [
         (b"", "no message of ROS 2"),
         (b"\0\1", "no message of ROS 2"),
-        (b"\0\0\0\0\0\0\0\3hi\0", "big-endian"),
-        (b"\0\7\0\0\3\0\0\0hi\0", "no plain CDR"),
+        (b"\0\x0b\0\0\3\0\0\0hi\0", "no plain CDR"),
         (HI[:-1], "takes bytes up to 7, the message has 6"),
         (HI[:5], "goes on beyond"),
         (b"\0\1\0\0\2\0\0\0hi", "without its zero"),

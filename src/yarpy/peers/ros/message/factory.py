@@ -62,7 +62,7 @@ def make(
         "__init__": lambda: _initialiser(struct, used),
         "_read": lambda: staticmethod(reader.reader(struct, classes)),
         "_write": lambda: staticmethod(writer.writer(struct, used)),
-        "from_ros": lambda: staticmethod(reader.whole(definition.name, made._read)),
+        "from_ros": lambda: staticmethod(reader.whole(struct, made._read)),
         "to_ros": lambda: writer.whole(struct, made._write),
     }.items():
         setattr(made, attr, _Late(made, attr, make_it))

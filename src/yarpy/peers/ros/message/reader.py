@@ -37,8 +37,9 @@ def reader(struct: Struct, classes: Mapping[Struct, type[Message]]) -> Read:
     return Reader(classes).compiled(struct)
 
 
-def whole(name: str, read: Read) -> Callable[[Buffer], Any]:
+def whole(struct: Struct, read: Read) -> Callable[[Buffer], Any]:
     """`from_ros` of a class: what `read` reads must be all of the bytes."""
+    name = struct.name
 
     def from_ros(view: Buffer) -> Any:
         size = len(view)
@@ -66,7 +67,7 @@ class Reader:
         self.classes = classes
         self.code = Code()
         self.code.globals.update(
-            _range=range, _short=short, _take=take, _beyond=_beyond, _times=_times, _str=str,
+            _range=range, _short=short, _take=take, _beyond=beyond, _times=_times, _str=str,
             _tuple=tuple.__new__, _Time=Time, _Duration=Duration,
         )  # fmt: skip
         self.after: list[str] = []
@@ -220,7 +221,7 @@ def take(room: list[int], count: int, path: str) -> None:
         )
 
 
-def _beyond(path: str, count: int, most: int) -> None:
+def beyond(path: str, count: int, most: int) -> None:
     raise DecodeError(f"{path}: {count} elements, of {most} that the type allows")
 
 

@@ -8,8 +8,9 @@
 Rules: as in `rosmsg/reader.py`: every count is checked against the bytes that are there, and
 against the limit of elements, before memory is taken. Only DecodeError and Truncated come out.
 Arrays of numbers look at the bytes. Where the compiler knows how a position is aligned, padding
-costs nothing. (OMG CDR, as rmw uses it: XCDR1 without options. Wide strings are as all rmw agree to
-have them, with two bytes more for each unit than OMG says.)
+costs nothing. Other spellings of CDR are made this one first. (OMG CDR, as rmw uses it: XCDR1
+without options. Wide strings are as all rmw agree to have them, with two bytes more for each unit
+than OMG says.)
 """
 
 from __future__ import annotations
@@ -24,8 +25,8 @@ from yarpy.limit import limits
 from yarpy.peers.ros.message.message import Message
 from yarpy.peers.ros.message.model import Primitive, Struct, Type
 from yarpy.peers.ros.message.reader import SMALL, Read, Reader
+from yarpy.peers.ros2.message.cdr_plain import HEAD, is_other, plain
 
-HEAD: Final = b"\0\1\0\0"  # little-endian, plain
 _PADDING: Final = 3  # bytes that writers over DDS may leave behind a message
 
 
@@ -51,13 +52,14 @@ def reader(struct: Struct, classes: Mapping[Struct, type[Message]]) -> Read:
     return _Reader(classes).compiled(struct)
 
 
-def whole(name: str, read: Read) -> Callable[[Buffer], Any]:
+def whole(struct: Struct, read: Read) -> Callable[[Buffer], Any]:
     """`from_ros` of a class: what `read` reads must be all of the bytes."""
+    name = struct.name
 
     def from_ros(view: Buffer) -> Any:
-        body = memoryview(view)[4:]
         if bytes(view[:2]) != HEAD[:2] or len(view) < 4:
-            _refuse(name, bytes(view[:4]))
+            view = _plain(struct, view)
+        body = memoryview(view)[4:]
         size = len(body)
         try:
             found, end = read(body, 0, size, None if size <= SMALL else [limits().elements])
@@ -77,12 +79,13 @@ def whole(name: str, read: Read) -> Callable[[Buffer], Any]:
     return from_ros
 
 
-def _refuse(name: str, head: bytes) -> None:
+def _plain(struct: Struct, view: Buffer) -> bytes:
+    head = bytes(view[:4])
     if len(head) < 4:
-        raise Truncated(f"{name}: {len(head)} bytes are no message of ROS 2", 4)
-    if head[:2] == b"\0\0":
-        raise DecodeError(f"{name}: a message of a big-endian computer, which is not read here")
-    raise DecodeError(f"{name}: bytes that begin with {head.hex(' ')} are no plain CDR")
+        raise Truncated(f"{struct.name}: {len(head)} bytes are no message of ROS 2", 4)
+    if not is_other(head):
+        raise DecodeError(f"{struct.name}: bytes that begin with {head.hex(' ')} are no plain CDR")
+    return plain(struct, view)
 
 
 class _Reader(Reader):

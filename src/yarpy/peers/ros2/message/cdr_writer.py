@@ -15,7 +15,8 @@ from yarpy.peers.ros.message import writer as packed
 from yarpy.peers.ros.message.message import Message
 from yarpy.peers.ros.message.model import Primitive, Struct, Type
 from yarpy.peers.ros.message.writer import Write, Writer
-from yarpy.peers.ros2.message.cdr_reader import HEAD, Alignment
+from yarpy.peers.ros2.message.cdr_plain import HEAD
+from yarpy.peers.ros2.message.cdr_reader import Alignment
 
 _ZEROS: Final = tuple(bytes(count) for count in range(8))
 
