@@ -109,6 +109,16 @@ def test_measurements(robot: Robot, names: LocalNames) -> None:
             found.torques()
 
 
+def test_names_that_are_never_the_same_take_no_memory(
+    robot: Robot, names: LocalNames, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(topics, "MOST", 5)
+    with board(names) as found:
+        robot.say([f"other{n}" for n in range(20)] + ["finger"], [0.0] * 20 + [0.03])
+        wait_until(lambda: found.encoders()[1] == pytest.approx(math.degrees(0.03)))
+        assert len(found._joints) == 5
+
+
 def test_moving(robot: Robot, names: LocalNames) -> None:
     with board(names, axis_names=["finger", "shoulder"], prismatic=["finger"]) as found:
         found.position_move([1], [100.0])

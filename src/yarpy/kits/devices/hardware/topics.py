@@ -37,6 +37,7 @@ FORMS: Final = ("trajectory", "positions")
 CONNECTED: Final = 10.0  # seconds for a connection
 FIRST: Final = 5.0  # seconds for the first message with all joints
 DIRECT: Final = 0.1  # seconds of a trajectory that is there at once
+MOST: Final = 1000  # joints that are remembered
 DONE: Final = 0.5  # degrees or millimetres from its goal, where a joint has arrived
 _SLOWEST: Final = 0.1  # of a reference speed
 _SPEED: Final = 10.0
@@ -187,7 +188,9 @@ class TopicBoard(Closeable):
             return
         stamp = message.stamp
         with self._changed:
-            self._joints |= {name: row for name, row in rows.items() if row[0] is not None}
+            for name, row in rows.items():
+                if row[0] is not None and (name in self._joints or len(self._joints) < MOST):
+                    self._joints[name] = row
             self._time = stamp.time if stamp is not None and stamp.time else time.time()
             self._came = time.monotonic()
             self._changed.notify_all()
