@@ -4,6 +4,7 @@ that as a camera."""
 from __future__ import annotations
 
 import sys
+import time
 from pathlib import Path
 from typing import Any
 
@@ -80,6 +81,7 @@ def recording(tmp_path_factory: pytest.TempPathFactory) -> str:
         seen[..., 0] = 10 * number
         sensors[0].on_video_frame(frame(rs, depth, far, number))
         sensors[1].on_video_frame(frame(rs, colour, seen, number))
+        time.sleep(0.033)  # so fast will it be shown
     for _ in range(2 * FRAMES):
         assert taken.wait_for_frame(10_000)
     for sensor in recorded:
@@ -132,9 +134,9 @@ def test_what_it_is(recording: str) -> None:
 def test_it_falls_silent(
     recording: str, monkeypatch: pytest.MonkeyPatch, caplog: pytest.LogCaptureFixture
 ) -> None:
-    monkeypatch.setattr("yarpy.kits.devices.hardware.realsense._SILENT", 0.0)
     with Realsense(file=recording) as camera:
         shown(camera, "colour")
+        monkeypatch.setattr("yarpy.kits.devices.hardware.realsense._SILENT", 0.0)
         monkeypatch.setattr(camera, "_pipeline", Silent(camera._pipeline))
         wait_until(lambda: camera.last_error()[0] != "")
         assert STATES[camera.status()] == "error"
