@@ -161,7 +161,7 @@ def test_fifo_keeps_everything_in_order() -> None:
 @pytest.mark.parametrize("value", [[1], ["x" * 1000], [[n, n] for n in range(20)]])
 def test_fifo_counts_what_messages_really_take(carrier: str, value: list[object]) -> None:
     """Small messages take several times their payload."""
-    names, count = LocalNames(), 500
+    names, count = LocalNames(), 2000
     with (
         BufferedPort("/in", strict=True, names=names) as in_,
         BufferedPort("/out", strict=True, names=names) as out,

@@ -67,7 +67,9 @@ class Moment:
 
 
 def moments() -> Iterator[Moment]:
-    """One after the other, until a run has none left."""
+    """One after the other, until a run has none left. The first comes twice: CPython 3.12 tells
+    nothing of a function that it traces for the first time."""
+    yield Moment(0)
     number = 0
     while True:
         moment = Moment(number)

@@ -283,7 +283,7 @@ def test_robot_that_is_started_again(browser: Browser, names: yarpy.YarpNameClie
             assert page.locator(".still").count() == 0
             page.evaluate("window.same = true")
         page.locator(".badge", has_text=re.compile(r"^still for \d")).first.wait_for()
-        assert page.locator("#cameras figure.still").count() == 2
+        wait_until(lambda: page.locator("#cameras figure.still").count() == 2)
         page.get_by_text("the robot has been silent for").wait_for()
         browser.picture(page, "panel_silent")
         with Robot("/again", icub_head((96, 72)), names=names):

@@ -264,6 +264,20 @@ def test_acknowledgements_that_came_before_the_end_count() -> None:
     assert (counter.messages, counter.drops, counter.unconfirmed) == (3, 1, 2)
 
 
+def test_acknowledgements_that_another_thread_reads_are_left_to_it() -> None:
+    """The one that ends a connection waits for nobody: what it does not know is unconfirmed."""
+    for _ in range(20):  # as above
+        link, _ = open_link(Tcp, ACK * 3)
+        for number in range(5):
+            link.send(Packet([number]))
+        if link.sender.window.open == 5:
+            break
+    with at_work(link):
+        link.sender.give_up(at_rest=False)
+    counter = link.counter
+    assert (counter.messages, counter.drops, counter.unconfirmed) == (0, 0, 5)
+
+
 @pytest.mark.parametrize("late", [0, 3])
 def test_without_acknowledgements_the_system_of_a_dead_peer_is_not_believed(late: int) -> None:
     """It takes messages for a program that has ended, or that has them in its hands and ends."""

@@ -438,11 +438,15 @@ class Sender:
         counter.unconfirmed += fate.open
 
     def _take_last_acks(self) -> None:
-        """Those that came before the end."""
+        """Those that came before the end, unless another thread reads them."""
+        hold = Hold(self, NOW)
         try:
-            self.window.collect(wait=False)
+            if self.held() or hold.take():
+                self.window.collect(wait=False)
         except (YarpError, ValueError):
             pass  # that was all, or the frame beneath a signal handler is reading them
+        finally:
+            hold.give()
 
     @property
     def fate(self) -> Fate:
