@@ -124,7 +124,8 @@ def test_it_connects_and_stores_what_it_says(
         port.write(yarpy.Bottle([7]), yarpy.Stamp(3, 1.5), wait=True)
         folder = tmp_path / "we_ird__00001"
         wait_until(lambda: stored(folder) == 1, what="it is in the hands of the system")
-        with yarpy.RpcClient("/d/rpc") as client:
+        with yarpy.RpcClient() as client:
+            client.connect("/d/rpc", timeout=HANG)  # it may not be open yet
             assert client.call("sing") == ["command not recognized"] * 2
         process.signal(signal.SIGTERM)
         assert process.wait(HANG) == 0
