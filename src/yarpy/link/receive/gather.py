@@ -96,7 +96,7 @@ class Gather:
 
 
 class Watch:
-    """What a gathering thread looks at: connections, and a socket by which it is told to end."""
+    """The connections that a gathering thread waits for, and a socket that tells it to end."""
 
     def __init__(self) -> None:
         self.selector = selectors.DefaultSelector()

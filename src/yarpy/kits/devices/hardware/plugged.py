@@ -1,4 +1,4 @@
-"""What is plugged into this computer, as the lines that open it.
+"""List what is plugged into this computer, as the lines that open it.
 
     plugged()[0]        "yarpy dev gamepad --port /dev/input/js0"
 

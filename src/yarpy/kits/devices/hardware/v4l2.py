@@ -105,7 +105,7 @@ class V4l2Camera(Closeable):
         return number, self._maps[number][:size]
 
     def _name(self) -> str:
-        """What it is called. Raises OSError if it is no camera."""
+        """Return its name. Raises OSError if it is no camera."""
         found = bytearray(CAPABILITY.size)
         self._control(QUERYCAP, found)
         _, name, _, _, all_of_it, this = CAPABILITY.unpack(found)

@@ -324,7 +324,7 @@ def _live(
 
 
 class Keys:
-    """What the keys of a recorder's terminal do. Behind `m` a note may be typed: Enter marks the
+    """The keys of a recorder's terminal. Behind `m` a note may be typed: Enter marks the
     moment of the `m` with it, Escape does not."""
 
     def __init__(self, recorder: Recorder, news: MutableSequence[str]) -> None:
