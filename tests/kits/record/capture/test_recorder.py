@@ -15,6 +15,7 @@ from typing import NamedTuple
 import numpy as np
 import pytest
 from chaos.network import small_disk
+from support.recordings import START
 from support.wait import HANG, wait_until
 
 import yarpy
@@ -22,7 +23,7 @@ from yarpy import record
 from yarpy.errors import LocalProtocolError
 from yarpy.kits.record.capture import recorder as module
 from yarpy.kits.record.capture.disk_space import DiskSpace
-from yarpy.kits.record.capture.recorder import Recorder
+from yarpy.kits.record.capture.recorder import SECOND, Recorder
 
 
 class Disk(NamedTuple):
@@ -216,6 +217,21 @@ def test_pause_mark_split(tmp_path, names, out) -> None:
         out.write([3], wait=True)
     assert [[one.value for one in recorded(file)] for file in recorder.files] == [[[1]], [[2]]]
     assert kinds(*recorder.files) == ["connected", "resume", "mark", "pause", "disconnected"]
+
+
+def test_a_recording_that_starts_paused_begins_when_it_goes_on(tmp_path, names, out) -> None:
+    """An hour between the connection and `resume` is no part of it."""
+    clock = [START]
+    with Recorder("/out", path=tmp_path / "x", paused=True, names=names, now=lambda: clock[0]) as r:
+        assert out.wait_for_outputs(timeout=HANG)
+        wait_until(lambda: r.connected == {"/out"})
+        clock[0] += 3600 * SECOND
+        r.resume()
+        clock[0] += SECOND
+        out.write([1], wait=True)
+    with record.open(*r.files) as found:
+        assert (found.begin, found.end) == (START / SECOND + 3600, START / SECOND + 3601)
+        assert [note["what"] for note in found.notes()] == ["connected", "resume", "disconnected"]
 
 
 def test_a_port_that_comes_back(tmp_path, names) -> None:

@@ -20,13 +20,14 @@ from collections import deque
 from collections.abc import Callable, Mapping, Sequence
 from contextlib import suppress
 from pathlib import Path
-from typing import Any, Final, Self
+from typing import Final, Self
 
 from yarpy import __version__, linger
 from yarpy.errors import LocalProtocolError
 from yarpy.kits.record.capture.batch import Batch
 from yarpy.kits.record.capture.disk_space import DiskSpace, Split, size_text
 from yarpy.kits.record.capture.loss import Losses
+from yarpy.kits.record.capture.notes import Notes
 from yarpy.kits.record.capture.opening import open_port, without_ending
 from yarpy.kits.record.capture.output import Output, contents
 from yarpy.kits.record.capture.queue import MEMORY, Count, MessageQueue
@@ -43,7 +44,6 @@ PERIOD: Final = 0.05  # seconds between looks at what has come
 SYNC: Final = 0.5  # seconds between the ends of waiting for the disk
 SECOND: Final = 1_000_000_000  # nanoseconds
 CLOCK_STEP: Final = SECOND // 2  # nanoseconds by which a clock that is set is told
-_NOTES: Final = 1000  # that wait to be written
 
 
 class Recorder:
@@ -61,7 +61,7 @@ class Recorder:
     rates: the largest number of messages a second, by patterns of names: `{"/cam/*": 10}`.
     snapshot: write nothing but the last so many seconds, when `snapshot` is called; `memory` bounds
     them, too. triggers: regular expressions by ports: a message with a match calls it.
-    paused: take nothing before `resume`.
+    paused: take nothing before `resume`, with which the recording begins.
     attach: files that are kept within each MCAP file: the application, definitions of types.
     carrier: how the ports are connected, else as `yarpy.connect` does.
     name: of its own port. names: a name client, None for the default.
@@ -115,7 +115,7 @@ class Recorder:
             "clock": "system" if now is time.time_ns else "network",
             "wanted": json.dumps({"ports": ports, "every": every, "pattern": pattern}),
         }
-        self._notes: deque[tuple[dict[str, Any], int]] = deque(maxlen=_NOTES)
+        self._notes = Notes(now, begun=not paused)
         self._losses = Losses(self._queue.counts)
         self._wishes: deque[Callable[[], None]] = deque()
         self._closing = threading.Event()
@@ -214,18 +214,18 @@ class Recorder:
         """Ignore what comes, until `resume`."""
         if not self.paused:
             self._queue.paused = True
-            self._note("pause")
+            self._notes.add("pause")
 
     def resume(self) -> None:
         """Take messages again."""
         if self.paused:
-            self._note("resume")
+            self._notes.add("resume")
+            self._notes.begin()
             self._queue.paused = False
 
     def mark(self, text: str = "", ago: float = 0.0) -> None:
         """Note something about this moment, or one that was so many seconds ago."""
-        moment = self._now() - round(ago * SECOND)
-        self._notes.append(({"what": "mark", "text": text[:10_000]}, moment))
+        self._notes.add("mark", round(ago * SECOND), text=text[:10_000])
 
     def split(self) -> None:
         """Go on in a new file. Raises LocalProtocolError where only snapshots are written."""
@@ -239,7 +239,7 @@ class Recorder:
         ring = self._ring
         if ring is None:
             raise LocalProtocolError("everything is recorded: snapshots take --snapshot SECONDS")
-        self._note("snapshot", why=why)
+        self._notes.add("snapshot", why=why)
         self._wishes.append(lambda: ring.save(self._output, self._queue, self._now()))
         self._queue.wake()
 
@@ -249,15 +249,12 @@ class Recorder:
         if event.incoming and event.created:
             self._queue.forget(event.source)
         if event.incoming and not self._closing.is_set():
-            self._note(
+            self._notes.add(
                 "connected" if event.created else "disconnected",
                 port=event.source,
                 carrier=event.carrier,
                 **({"reason": event.reason} if event.reason else {}),
             )
-
-    def _note(self, what: str, **facts: Any) -> None:
-        self._notes.append(({"what": what, **facts}, self._now()))
 
     # -- the thread that writes --------------------------------------------------------------------
 
@@ -290,7 +287,8 @@ class Recorder:
         try:
             while not self.failure:
                 queue.wait(PERIOD)
-                last = self._closing.is_set()
+                if last := self._closing.is_set():
+                    self._notes.begin()
                 self._gather(batch)
                 if last or batch.due:
                     batch.flush()
@@ -333,8 +331,7 @@ class Recorder:
             if ring.add(queued):
                 self._tell(f"a message of {queued.port} is written, with what was before it")
                 self.snapshot(f"a message of {queued.port}")
-        while self._notes:
-            note = self._notes.popleft()
+        for note in self._notes.take():
             if ring is None:
                 self._output.note(*note)
                 batch.begin()
@@ -348,17 +345,17 @@ class Recorder:
         if state == "full":
             self._end(f"the disk is full but for {size_text(self._disk.free)}: recording stops")
         elif state and state != before:
-            self._note("disk low", free=self._disk.free)
+            self._notes.add("disk low", free=self._disk.free)
             self._tell(f"{size_text(self._disk.free)} are left on the disk")
         if self._output.gone:
             gone = self._output.path
             batch.lose()
             self._output.leave()
-            self._note("file gone", file=str(gone))
+            self._notes.add("file gone", file=str(gone))
             self._tell(f"{gone} was taken away: what follows goes into {self._output.path}")
         now = time.time_ns() - time.monotonic_ns()
         if abs(now - step) > CLOCK_STEP:
-            self._note("clock set", seconds=(now - step) / SECOND)
+            self._notes.add("clock set", seconds=(now - step) / SECOND)
             self._tell(f"the clock was set by {(now - step) / SECOND:+.1f} s")
         return now
 
