@@ -55,6 +55,7 @@ BESIDE = {
     ("linger", "fork"),
     ("linger", "log"),
     ("linger", "platform"),
+    ("platform", "errors"),
     ("link", "monitors"),
     ("link", "qos"),
     ("monitors", "qos"),

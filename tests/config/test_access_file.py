@@ -10,9 +10,9 @@ import pytest
 import yarpy
 from yarpy.config import access_file
 from yarpy.config.access_file import current, parse, path
-from yarpy.config.configuration import conf_directory
 from yarpy.errors import AddressError
 from yarpy.link.begin.admission import RIGHTS, Gate, Peer
+from yarpy.platform.folders import conf_directory
 
 SAMPLE = """\
 # our laboratory

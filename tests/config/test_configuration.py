@@ -1,6 +1,5 @@
 """Finding the servers: directories, files in both forms, environment, writing."""
 
-import os
 from pathlib import Path
 
 import pytest
@@ -10,7 +9,6 @@ from hypothesis import strategies as st
 from yarpy.config.configuration import (
     Server,
     clear_server,
-    conf_directory,
     configuration,
     default_port,
     namespaces,
@@ -24,21 +22,6 @@ from yarpy.config.configuration import (
     write_server,
 )
 from yarpy.errors import AddressError
-
-
-@pytest.mark.parametrize(
-    ("environment", "platform", "expected"),
-    [
-        ({"YARP_CONFIG_HOME": "/a", "XDG_CONFIG_HOME": "/b"}, "linux", "/a"),
-        ({"YARP_CONFIG_HOME": "", "HOME": "/h"}, "linux", "."),
-        ({"XDG_CONFIG_HOME": "/b", "HOME": "/h"}, "linux", "/b/yarp"),
-        ({"HOME": "/h"}, "linux", "/h/.config/yarp"),
-        ({"HOME": "/h"}, "darwin", "/h/Library/Preferences/yarp"),
-        ({"APPDATA": "/app", "USERPROFILE": "/u"}, "win32", "/app/yarp/config"),
-    ],
-)
-def test_directory(environment: dict[str, str], platform: str, expected: str) -> None:
-    assert conf_directory(environment, platform) == Path(expected)
 
 
 def test_file_names(tmp_path: Path) -> None:
@@ -193,9 +176,3 @@ def test_any_file(text: str) -> None:
     except AddressError:
         return
     assert server is None or (server.host and 0 <= server.port <= 65535)
-
-
-def test_without_a_home_the_system_knows_it() -> None:
-    """As of services and cron: not the current folder, where others would not look."""
-    assert conf_directory({}, "linux") == Path(os.path.expanduser("~"), ".config", "yarp")
-    assert conf_directory({}, "linux").is_absolute()

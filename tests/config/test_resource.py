@@ -5,17 +5,7 @@ from pathlib import Path
 
 import pytest
 
-from yarpy.config.configuration import conf_directory
-from yarpy.config.resource import (
-    Search,
-    base_directories,
-    configuration_directories,
-    context_home,
-    data_directories,
-    data_home,
-    find_file,
-    robot_home,
-)
+from yarpy.config.resource import Search, context_home, find_file, robot_home
 
 
 @pytest.fixture
@@ -98,25 +88,7 @@ def test_robot(environment: dict[str, str], tmp_path: Path) -> None:
     assert tmp_path / "ch/robots/default/x" in places
 
 
-def test_defaults_and_xdg() -> None:
-    assert base_directories({"HOME": "/h"})[:4] == [
-        conf_directory({"HOME": "/h"}),
-        Path("/h/.local/share/yarp"),
-        Path("/etc/xdg/yarp"),
-        Path("/usr/local/share/yarp"),
-    ]
-    xdg = {
-        "XDG_CONFIG_HOME": "/c",
-        "XDG_DATA_HOME": "/d",
-        "XDG_CONFIG_DIRS": os.pathsep.join(("/e", "/f", "")),
-        "XDG_DATA_DIRS": "/g",
-    }
-    assert base_directories(xdg) == [
-        Path(place) for place in ("/c/yarp", "/d/yarp", "/e/yarp", "/f/yarp", "/g/yarp")
-    ]
-    assert configuration_directories({"YARP_CONFIG_DIRS": ""}) == []
-    assert data_directories({}) == [Path("/usr/local/share/yarp"), Path("/usr/share/yarp")]
-    assert data_home({"YARP_DATA_HOME": "/x"}) == Path("/x")
+def test_homes() -> None:
     assert context_home({"YARP_DATA_HOME": "/x"}, "ctx") == Path("/x/contexts/ctx")
     assert robot_home({"YARP_DATA_HOME": "/x"}) == Path("/x/robots/default")
     assert robot_home({"YARP_DATA_HOME": "/x", "YARP_ROBOT_NAME": "r"}) == Path("/x/robots/r")

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import errno
 import os
 import subprocess
 import sys
@@ -10,6 +11,7 @@ import pytest
 from support.wait import HANG
 
 import yarpy
+from yarpy.platform.console import is_unread
 
 # What the system does: a thread of its own calls what was registered, and ends the process. (Under
 # wine nobody can send Ctrl-Break to a program without a terminal.)
@@ -56,3 +58,15 @@ def test_a_program_of_ports_gives_its_name_back(way: str) -> None:
             program.stdin.flush()
             assert program.wait(HANG) == 5
         assert (yarpy.query("/asked/to/end") is None) == (way != "it has a handler of its own")
+
+
+def test_a_pipe_that_nobody_reads() -> None:
+    reading, writing = os.pipe()
+    os.close(reading)
+    try:
+        with pytest.raises(OSError) as raised:
+            os.write(writing, b"x")
+    finally:
+        os.close(writing)
+    assert is_unread(raised.value)
+    assert not is_unread(OSError(errno.ENOSPC, "no space left"))

@@ -7,8 +7,8 @@ from pathlib import Path
 
 import pytest
 
-from yarpy.config.configuration import conf_directory
 from yarpy.errors import LocalProtocolError
+from yarpy.platform.folders import conf_directory
 from yarpy.transports.tls_setting import folder, has_certificate, mutual, required
 
 

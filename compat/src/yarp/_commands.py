@@ -25,14 +25,10 @@ from typing import Any, Final, NoReturn
 import yarpy
 from yarp._log import print_lines
 from yarpy.config.command_line import parse_options
-from yarpy.config.configuration import (
-    conf_directory,
-    configuration,
-    namespace_file,
-    server_file,
-)
+from yarpy.config.configuration import configuration, namespace_file, server_file
 from yarpy.config.resource import base_directories
 from yarpy.data.text import plain_text
+from yarpy.platform.folders import conf_directory
 
 #: Options of windows, and of what is drawn into them.
 _WINDOW: Final = frozenset(

@@ -13,7 +13,6 @@ from yarp._log import say
 from yarp._numbers import store
 from yarpy.config.configuration import (
     Server,
-    conf_directory,
     configuration,
     default_port,
     namespaces,
@@ -21,6 +20,7 @@ from yarpy.config.configuration import (
     write_server,
 )
 from yarpy.network.asking import ask_server
+from yarpy.platform.folders import conf_directory
 
 
 def write_to_name_server(cmd: Any, reply: Any, style: ContactStyle | None = None) -> bool:

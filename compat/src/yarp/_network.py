@@ -321,7 +321,7 @@ class NetworkBase:
     @staticmethod
     def getConfigFile(fname: str) -> str:
         """Where a configuration file of this user is."""
-        from yarpy.config.configuration import conf_directory
+        from yarpy.platform.folders import conf_directory
 
         return str(conf_directory(os.environ) / fname)
 

@@ -15,8 +15,8 @@ from yarp._bottle import Bottle
 from yarp._log import say
 from yarp._searchable import Searchable
 from yarp._value import MISSING, Value, copied, int32, number
-from yarpy.config.configuration import conf_directory
-from yarpy.config.resource import (
+from yarpy.platform.folders import (
+    conf_directory,
     configuration_directories,
     data_directories,
     data_home,

@@ -10,7 +10,6 @@ Exit codes: 0 done; 1 not done, or used wrongly; 255 no such verb; 128 + N ended
 
 from __future__ import annotations
 
-import errno
 import re
 import sys
 from collections.abc import Sequence
@@ -22,6 +21,7 @@ from yarpy.cli import signals
 from yarpy.cli.stderr import complain, complain_of
 from yarpy.cli.verb_list import GROUPS, VERBS
 from yarpy.errors import UnknownPlugin, YarpError
+from yarpy.platform.console import is_unread
 
 ALIASES: Final = {"priority-qos": "qos", "priority-sched": "sched"}  # the spellings of C++
 NO_SUCH_VERB: Final = 255
@@ -143,7 +143,8 @@ def run(arguments: Sequence[str]) -> int:
         complain(error.format_message())
         return 1
     except (YarpError, OSError) as error:
-        complain_of(error)
+        if not (isinstance(error, OSError) and is_unread(error)):
+            complain_of(error)
         return 1
     return code if isinstance(code, int) else 0
 
@@ -160,8 +161,7 @@ def main() -> NoReturn:
         if sys.stdout is not None:  # closed before we began
             sys.stdout.flush()
     except OSError as error:
-        # Windows calls the same an invalid argument.
-        if error.errno != (errno.EINVAL if sys.platform == "win32" else errno.EPIPE):
+        if not is_unread(error):
             raise
         sys.stdout = None  # nobody reads: no complaint at exit
         code = code or 1

@@ -42,7 +42,7 @@ def at_terminal() -> bool:
 def history_file(name: str) -> Path:
     """Where the lines typed at the prompt called `name` (a port) are remembered."""
     from yarpy.config.configuration import safe_name
-    from yarpy.config.resource import data_home
+    from yarpy.platform.folders import data_home
 
     return data_home(os.environ) / "history" / safe_name(name).strip("_")
 

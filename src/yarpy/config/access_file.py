@@ -24,9 +24,9 @@ from pathlib import Path
 from typing import Any, Final
 
 from yarpy.config.access import ALL, FILE, Access, Door, Rule
-from yarpy.config.configuration import conf_directory, folder
 from yarpy.errors import AddressError
 from yarpy.link.begin.admission import KNOWN, RIGHTS, Gate
+from yarpy.platform.folders import conf_directory, folder
 
 SETTING: Final = "YARPY_ACCESS"
 LEAST: Final = 16  # characters of a token

@@ -16,13 +16,12 @@ from __future__ import annotations
 
 import os
 import re
-import sys
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from functools import lru_cache
 from pathlib import Path
 
 from yarpy.errors import AddressError
+from yarpy.platform.folders import conf_directory
 from yarpy.registry import names
 
 DEFAULT_PORT = 10000
@@ -93,39 +92,7 @@ def configuration(environment: Mapping[str, str], directory: Path | None = None)
     return Configuration(tuple(found), tuple(missing), directory)
 
 
-# --- directories and files
-
-
-@lru_cache(maxsize=256)
-def folder(*parts: str) -> Path:
-    """A path of these parts. Every port asks for the same few, and making one takes a while."""
-    return Path(*parts)
-
-
-def home_directory(environment: Mapping[str, str]) -> str:
-    """The home of this user: where services and cron set no HOME, as the system knows it; never the
-    current folder, in which another program of the same user would not look."""
-    named = environment.get("HOME") or environment.get("USERPROFILE")
-    if named:
-        return named
-    known = os.path.expanduser("~")  # the entry of this user in the system's list
-    if known == "~":
-        raise AddressError("nobody knows your home directory: set HOME, or YARP_CONFIG_HOME")
-    return known
-
-
-def conf_directory(environment: Mapping[str, str], platform: str = sys.platform) -> Path:
-    """Where the configuration of this user lives."""
-    if "YARP_CONFIG_HOME" in environment:
-        return folder(environment["YARP_CONFIG_HOME"])
-    if environment.get("XDG_CONFIG_HOME"):
-        return folder(environment["XDG_CONFIG_HOME"], "yarp")
-    if platform == "win32" and environment.get("APPDATA"):
-        return folder(environment["APPDATA"], "yarp", "config")
-    home = home_directory(environment)
-    if platform == "darwin":
-        return folder(home, "Library", "Preferences", "yarp")
-    return folder(home, ".config", "yarp")
+# --- files
 
 
 def safe_name(name: str) -> str:

@@ -20,8 +20,13 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 
-from yarpy.config.configuration import conf_directory, folder, home_directory
 from yarpy.data.text import plain_text
+from yarpy.platform.folders import (
+    conf_directory,
+    configuration_directories,
+    data_directories,
+    data_home,
+)
 
 
 @dataclass(frozen=True)
@@ -104,25 +109,6 @@ def base_directories(environment: Mapping[str, str]) -> list[Path]:
     return [*own, *configuration_directories(environment), *system, *_listed(system)]
 
 
-def data_home(environment: Mapping[str, str]) -> Path:
-    """The data of this user: `YARP_DATA_HOME`, `XDG_DATA_HOME`/yarp, ~/.local/share/yarp."""
-    if "YARP_DATA_HOME" in environment:
-        return folder(environment["YARP_DATA_HOME"])
-    if environment.get("XDG_DATA_HOME"):
-        return folder(environment["XDG_DATA_HOME"], "yarp")
-    return folder(home_directory(environment), ".local", "share", "yarp")
-
-
-def configuration_directories(environment: Mapping[str, str]) -> list[Path]:
-    """The configuration of the system: `YARP_CONFIG_DIRS`, `XDG_CONFIG_DIRS`, /etc/xdg/yarp."""
-    return _directories(environment, "CONFIG_DIRS", ["/etc/xdg/yarp"])
-
-
-def data_directories(environment: Mapping[str, str]) -> list[Path]:
-    """The data of the system: `YARP_DATA_DIRS`, `XDG_DATA_DIRS`, /usr/local and /usr/share."""
-    return _directories(environment, "DATA_DIRS", ["/usr/local/share/yarp", "/usr/share/yarp"])
-
-
 def context_home(environment: Mapping[str, str], context: str) -> Path:
     """Where this user's files of a context are kept; not created here."""
     return data_home(environment) / "contexts" / context
@@ -132,13 +118,6 @@ def robot_home(environment: Mapping[str, str], robot: str = "") -> Path:
     """Where this user's files of a robot are kept; not created here."""
     robot = robot or environment.get("YARP_ROBOT_NAME") or "default"
     return data_home(environment) / "robots" / robot
-
-
-def _directories(environment: Mapping[str, str], name: str, default: list[str]) -> list[Path]:
-    if f"YARP_{name}" in environment:
-        return [folder(part) for part in environment[f"YARP_{name}"].split(os.pathsep) if part]
-    parts = [part for part in environment.get(f"XDG_{name}", "").split(os.pathsep) if part]
-    return [folder(part, "yarp") for part in parts] or [folder(part) for part in default]
 
 
 def _listed(directories: Sequence[Path]) -> list[Path]:

@@ -2,7 +2,8 @@
 
 Rules: listing interfaces is best effort; where the system cannot, only loopback is known. Texts are
 plain: no zone (`%eth0`), and an IPv4 address seen through an IPv6 socket (`::ffff:10.0.0.1`) is
-written as IPv4, because that is what C++ YARP compares them with.
+written as IPv4, because that is what C++ YARP compares them with. The library ifaddr lists the
+same, but starts a program (ldconfig) when it is imported: 13 to 22 ms, where this takes 0.3 ms.
 """
 
 from __future__ import annotations

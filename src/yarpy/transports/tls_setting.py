@@ -14,11 +14,11 @@ Rules: apart from `tls`, so that a program without TLS does not load it.
 from __future__ import annotations
 
 import os
-import sys
 from pathlib import Path
 from typing import Final
 
 from yarpy.errors import LocalProtocolError
+from yarpy.platform.folders import conf_directory
 
 SETTING: Final = "YARPY_TLS"
 FIRST_BYTE: Final = 0x16  # of every TLS connection, and of no other protocol here
@@ -41,19 +41,8 @@ def mutual() -> bool:
 
 def folder() -> Path:
     """Where the certificates are: beside `yarp.conf`."""
-    known = os.environ
-    if known.get("YARPY_TLS_DIR"):
-        return Path(known["YARPY_TLS_DIR"])
-    if "YARP_CONFIG_HOME" in known:
-        return Path(known["YARP_CONFIG_HOME"], "tls")
-    if known.get("XDG_CONFIG_HOME"):
-        return Path(known["XDG_CONFIG_HOME"], "yarp", "tls")
-    if sys.platform == "win32" and known.get("APPDATA"):
-        return Path(known["APPDATA"], "yarp", "config", "tls")
-    home = Path(known.get("HOME") or known.get("USERPROFILE") or os.path.expanduser("~"))
-    if sys.platform == "darwin":
-        return home / "Library" / "Preferences" / "yarp" / "tls"
-    return home / ".config" / "yarp" / "tls"
+    said = os.environ.get("YARPY_TLS_DIR")
+    return Path(said) if said else conf_directory(os.environ) / "tls"
 
 
 def has_certificate() -> bool:

@@ -27,12 +27,12 @@ def command(host: str | None, port: int | None, mode: str, clean: bool) -> int:
     from yarpy.config.configuration import (
         Server,
         clear_server,
-        conf_directory,
         namespaces,
         read_server,
         server_file,
         write_server,
     )
+    from yarpy.platform.folders import conf_directory
 
     directory = conf_directory(os.environ)
     namespace = namespaces(os.environ, directory)[0]

@@ -19,7 +19,8 @@ from yarpy.cli.stderr import warn
 @click.argument("names", nargs=-1)
 def command(names: tuple[str, ...]) -> int:
     """Show the namespaces in use, or set them: the first one is where ports are registered."""
-    from yarpy.config.configuration import ROOT, conf_directory, namespaces, write_namespaces
+    from yarpy.config.configuration import ROOT, namespaces, write_namespaces
+    from yarpy.platform.folders import conf_directory
 
     directory = conf_directory(os.environ)
     if names:

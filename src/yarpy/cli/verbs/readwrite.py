@@ -6,7 +6,6 @@ input. Exit codes: 0; 1 a port cannot be opened, or after ^C.
 
 from __future__ import annotations
 
-import contextlib
 import threading
 
 import click
@@ -17,6 +16,7 @@ from yarpy.cli.ports import open_port
 from yarpy.cli.signals import Interrupted
 from yarpy.cli.verbs.read import Printer, open_reader
 from yarpy.cli.verbs.write import feed
+from yarpy.platform.console import is_unread
 
 
 @click.command()
@@ -42,5 +42,8 @@ def command(in_port: str, out_port: str) -> int:
 
 
 def _print(reader: yarpy.BufferedPort) -> None:
-    with contextlib.suppress(BrokenPipeError):  # nobody reads what we print; sending goes on
+    try:
         Printer().follow(reader)
+    except OSError as error:
+        if not is_unread(error):
+            raise  # else sending goes on

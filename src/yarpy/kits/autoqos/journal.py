@@ -14,11 +14,11 @@ from contextlib import suppress
 from pathlib import Path
 from typing import Final
 
-from yarpy.config.resource import data_home
 from yarpy.errors import LocalProtocolError
 from yarpy.kits.autoqos.change import Change
 from yarpy.limit import JOURNAL
 from yarpy.platform.file_lock import hold
+from yarpy.platform.folders import data_home
 
 NAME: Final = "autoqos.journal"
 

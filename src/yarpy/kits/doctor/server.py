@@ -7,17 +7,12 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from yarpy.config.configuration import (
-    Server,
-    conf_directory,
-    namespace_file,
-    namespaces,
-    server_file,
-)
+from yarpy.config.configuration import Server, namespace_file, namespaces, server_file
 from yarpy.contact import Contact
 from yarpy.errors import YarpError
 from yarpy.kits.doctor.case import Case
 from yarpy.kits.doctor.finding import Finding
+from yarpy.platform.folders import conf_directory
 
 
 def find(case: Case) -> Iterator[Finding]:

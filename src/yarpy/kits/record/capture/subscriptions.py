@@ -17,7 +17,7 @@ from contextlib import suppress
 from dataclasses import dataclass, field
 from typing import Final
 
-from yarpy.config.configuration import ROOT, conf_directory, namespaces
+from yarpy.config.configuration import ROOT, namespaces
 from yarpy.contact import Contact
 from yarpy.data.bottle import Property
 from yarpy.errors import LocalProtocolError, NoNameServer, YarpError
@@ -28,6 +28,7 @@ from yarpy.network.connection import disconnect
 from yarpy.network.remote import connect
 from yarpy.network.sampling import can_answer
 from yarpy.network.traffic import pairs
+from yarpy.platform.folders import conf_directory
 from yarpy.port.base import BasePort
 
 PAUSE: Final = 0.5  # seconds between looks
