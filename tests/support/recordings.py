@@ -4,6 +4,9 @@ from __future__ import annotations
 
 from pathlib import Path
 
+import numpy as np
+
+import yarpy
 from yarpy.data import codec
 from yarpy.kits.record.mcap.writer import McapWriter
 
@@ -31,4 +34,16 @@ def recorded(path: Path, count: int = 10, compression: str = "none", plain: bool
             writer.add(port, f"{n} {n}.5", START + n * STEP, payload_of([n]))
             if n % 5 == 4:
                 writer.flush()
+    return path
+
+
+def episode(path: Path, frames: int, base: int = 0) -> Path:
+    """A finished file: an arm, a goal and a camera of 100 Hz, for so many frames at 10 a second."""
+    with McapWriter(path) as writer:
+        for n in range(frames * 10 - 9):
+            time = START + n * STEP
+            writer.add("/arm", f"{n} {n}.5", time, payload_of(yarpy.Vector([base + n, -n])))
+            writer.add("/goal", "", time, payload_of([base + n]))
+            image = yarpy.Image(np.full((4, 6, 3), n, "u1"))
+            writer.add("/cam", "", time, payload_of(image))
     return path

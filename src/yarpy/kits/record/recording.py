@@ -19,6 +19,7 @@ from yarpy.errors import DecodeError, UnknownName
 from yarpy.kits.record.bag.reader import BagStorage, is_bag
 from yarpy.kits.record.dumper.reader import DumperStorage
 from yarpy.kits.record.envelope import SECOND
+from yarpy.kits.record.lerobot.layout import is_dataset
 from yarpy.kits.record.matlab.layout import CONFIGURATION, ENDING
 from yarpy.kits.record.mcap.layout import Damaged
 from yarpy.kits.record.mcap.storage import FOREVER, McapStorage
@@ -208,7 +209,7 @@ class Recording:
 def open_recording(*paths: str | Path) -> Recording:
     """Open files and folders as one recording, finished or not: MCAP files, folders of these,
     folders that C++ yarpdatadumper has written, bags of ROS (whose messages are not YARP's), files
-    of robometry (`.mat`, or the `.json` that wrote some).
+    of robometry (`.mat`, or the `.json` that wrote some), data sets of LeRobot (3.0).
 
     Raises MissingFile; DecodeError for what is no recording, UnknownPlugin without a library.
     """
@@ -226,6 +227,10 @@ def open_recording(*paths: str | Path) -> Recording:
 def _storages(path: Path) -> Iterator[Storage]:
     if is_bag(path):
         yield BagStorage(path)
+    elif is_dataset(path):
+        from yarpy.kits.record.lerobot.reader import LeRobotStorage  # numpy
+
+        yield LeRobotStorage(path)
     elif path.is_dir():
         files = sorted(path.glob("*.mcap"))
         yield from map(McapStorage, files)

@@ -4,30 +4,14 @@ import json
 import sys
 from pathlib import Path
 
-import numpy as np
 import pytest
 from support.peer import program
-from support.recordings import START, payload_of
+from support.recordings import START, episode, payload_of
 
 import yarpy
 from yarpy.errors import LocalProtocolError, UnknownPlugin
 from yarpy.kits.record.lerobot.dataset import Plan, export
 from yarpy.kits.record.mcap.writer import McapWriter
-
-MS = 1_000_000
-
-
-def episode(path: Path, frames: int, base: int = 0) -> Path:
-    """An arm and a goal of 100 Hz, a camera of 50 Hz, for so many frames at 10 a second."""
-    with McapWriter(path) as writer:
-        for n in range(frames * 10 - 9):
-            time = START + n * 10 * MS
-            writer.add("/arm", f"{n} {n}.5", time, payload_of(yarpy.Vector([base + n, -n])))
-            writer.add("/goal", "", time, payload_of([base + n]))
-            image = yarpy.Image(np.full((4, 6, 3), n, "u1"))
-            writer.add("/cam", "", time, payload_of(image))
-    return path
-
 
 PLAN = Plan(["/arm", "/goal"], ["/goal"], fps=10, task="Reach", robot="icub")
 

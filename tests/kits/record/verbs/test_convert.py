@@ -47,6 +47,10 @@ def test_a_data_set_of_lerobot(here, tmp_path) -> None:
     assert (said.code, said.err) == (0, "") and said.out.startswith(f"{folder}: 2 episodes, ")
     said = here(*words, "--state", "/a")
     assert said.code == 1 and "is there already: choose another name" in said.err
+    said = here("convert", folder, "-o", str(tmp_path / "y"))
+    assert (said.code, said.err) == (0, "")
+    said = here("info", str(tmp_path / "y.mcap"))
+    assert "/observation/state" in said.out and "mark episode 1" in said.out
 
 
 @pytest.mark.parametrize(

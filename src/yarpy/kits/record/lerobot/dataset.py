@@ -1,7 +1,4 @@
-"""A data set of LeRobot, version 3.0, from recordings: each of them is an episode.
-
-    meta/info.json   meta/stats.json   meta/tasks.parquet   meta/episodes/chunk-000/file-000.parquet
-    data/chunk-000/file-000.parquet    videos/observation.images.NAME/chunk-000/file-000.mp4
+"""A data set of LeRobot, as `layout.py` says, from recordings: each of them is an episode.
 
 Rules: a data set that is there is not touched. Ports of numbers make one vector, in their order.
 The numbers of one episode are in memory at a time, of its pictures a few; each has its own videos.
@@ -16,20 +13,24 @@ from collections.abc import Mapping, Sequence
 from contextlib import ExitStack
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import Any, Final
+from typing import Any
 
 from yarpy.data.sig.image import Image
 from yarpy.errors import LocalProtocolError, UnknownPlugin
 from yarpy.kits.record.lerobot import statistics
 from yarpy.kits.record.lerobot.frames import count, frames, stretch
+from yarpy.kits.record.lerobot.layout import (
+    CHUNK,
+    DATA_PATH,
+    INDEXES,
+    NEEDS,
+    VERSION,
+    VIDEO_PATH,
+    place,
+)
 from yarpy.kits.record.lerobot.video import CODEC, FORMAT, GROUP, QUALITY, Video
 from yarpy.kits.record.recorded import Recorded
 from yarpy.kits.record.recording import open_recording
-
-VERSION: Final = "v3.0"
-CHUNK: Final = 1000  # files of a folder
-_FILE: Final = "chunk-{:03d}/file-{:03d}"
-_INDEXES: Final = ("frame_index", "episode_index", "index", "task_index")
 
 
 @dataclass(frozen=True)
@@ -72,7 +73,7 @@ def export(paths: Sequence[str | Path], folder: Path, plan: Plan) -> int:
         import pyarrow
         import pyarrow.parquet
     except ImportError:
-        raise UnknownPlugin('a data set needs pyarrow: pip install "yarpy[table]"') from None
+        raise UnknownPlugin(NEEDS) from None
     folder.mkdir(parents=True)
     try:
         with ExitStack() as stack:
@@ -268,8 +269,7 @@ class _Making:
                 },
             }
         features["timestamp"] = {"dtype": "float32", "shape": [1], "names": None}
-        features |= {name: {"dtype": "int64", "shape": [1], "names": None} for name in _INDEXES}
-        file = "chunk-{chunk_index:03d}/file-{file_index:03d}"
+        features |= {name: {"dtype": "int64", "shape": [1], "names": None} for name in INDEXES}
         return {
             "codebase_version": VERSION,
             "robot_type": self._plan.robot or None,
@@ -281,8 +281,8 @@ class _Making:
             "video_files_size_in_mb": 200,
             "fps": self._plan.fps,
             "splits": {"train": f"0:{len(self._episodes)}"},
-            "data_path": f"data/{file}.parquet",
-            "video_path": f"videos/{{video_key}}/{file}.mp4" if self._shapes else None,
+            "data_path": DATA_PATH,
+            "video_path": VIDEO_PATH if self._shapes else None,
             "features": features,
         }
 
@@ -292,7 +292,7 @@ def _key(name: str) -> str:
 
 
 def _place(number: int) -> str:
-    return _FILE.format(number // CHUNK, number % CHUNK)
+    return place(number // CHUNK, number % CHUNK)
 
 
 def _column(name: str, kind: str, numpy: str) -> dict[str, Any]:
