@@ -2,7 +2,8 @@
 
 What an owner may change, for what arrives packed:
 
-    YARPY_MAX_PICTURE     bytes of pixels, of a JPEG or PNG file or a depth image: 256 MiB
+    YARPY_MAX_PICTURE     bytes of pixels, of a JPEG or PNG file or a depth image: 256 MiB; and of
+                          what is kept between the scans of a JPEG
     YARPY_MAX_UNPACKED    bytes of any other message that was compressed: 64 MiB
     YARPY_MAX_ELEMENTS    elements of one message, with those of the lists in it: 4194304
 

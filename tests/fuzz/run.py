@@ -1,9 +1,10 @@
 """Try to break whatever reads bytes of strangers: `python tests/fuzz/run.py SECONDS [TARGET...]`.
 
 Rules: all targets in turn, with inputs that a number makes (`--seed`), so that a run can be done
-again. What raises something else than its refusals, or takes a second, is put into
-`tests/fuzz/corpus/TARGET/`, where the tests try it from then on. Memory is measured for the whole
-process. The exit code is 1 if there was something.
+again. What raises something else than its refusals, takes a second or much memory, is put into
+`tests/fuzz/corpus/TARGET/`, where the tests try it from then on. Where the system cannot tell the
+memory of one input, that of the whole process is measured. The exit code is 1 if there was
+something.
 """
 
 from __future__ import annotations
@@ -19,6 +20,7 @@ import resource
 import sys
 import time
 import traceback
+from contextlib import suppress
 from pathlib import Path
 
 sys.path.insert(0, str(Path(__file__).parents[1]))
@@ -29,8 +31,13 @@ CORPUS = Path(__file__).parent / "corpus"
 TURN = 200  # inputs of one target before the next has its turn
 SLOW = 1.0  # seconds of this thread
 HANGS = 30  # seconds after which the process ends, showing where it is
+LARGE = 640 << 20  # bytes that an input takes; a JPEG may take YARPY_MAX_PICTURE twice
 MEMORY = 1 << 30  # bytes of the process
 _NUMBERS = (0, 1, 2, 0x7F, 0xFF, 0x7FFF, 0xFFFF, 0x7FFFFFFF, 0x80000000, 0xFFFFFFFF, 1 << 20)
+
+_CLEAR_PEAK = None
+with suppress(OSError):
+    _CLEAR_PEAK = os.open("/proc/self/clear_refs", os.O_WRONLY)
 
 
 def made(chance: random.Random, target: Target) -> bytes:
@@ -74,6 +81,7 @@ def _change(chance: random.Random, data: bytearray, target: Target) -> None:
 def tried(target: Target, data: bytes) -> tuple[str, float]:
     """What is wrong ("" for nothing), and the seconds that it took."""
     problem = ""
+    before = _new_peak()
     start = time.thread_time()
     try:
         target.read(data)
@@ -84,7 +92,21 @@ def tried(target: Target, data: bytes) -> tuple[str, float]:
     took = time.thread_time() - start
     if took > SLOW and not problem:
         problem = f"{took:.1f} s for {len(data)} bytes"
+    grown = _peak() - before
+    if grown > LARGE and not problem:
+        problem = f"{grown >> 20} MiB for {len(data)} bytes"
     return problem, took
+
+
+def _new_peak() -> int:
+    """Measure the peak of memory anew from now on, where the system can. Return what is taken."""
+    if _CLEAR_PEAK is not None:
+        os.write(_CLEAR_PEAK, b"5")  # the peak is what is taken now
+    return _peak()
+
+
+def _peak() -> int:
+    return resource.getrusage(resource.RUSAGE_SELF).ru_maxrss << 10
 
 
 def main() -> int:
@@ -101,7 +123,7 @@ def main() -> int:
     count, slowest, spent = dict.fromkeys(targets, 0), dict.fromkeys(targets, 0.0), {}
     found: dict[tuple[str, str], str] = {}
     resource.setrlimit(resource.RLIMIT_AS, (4 * MEMORY, 4 * MEMORY))
-    end = time.monotonic() + options.seconds
+    end, highest = time.monotonic() + options.seconds, 0
     while time.monotonic() < end:
         for name, target in targets.items():
             faulthandler.dump_traceback_later(HANGS + TURN * SLOW, exit=True, file=sys.stdout)
@@ -110,6 +132,7 @@ def main() -> int:
                 data = made(chance, target)
                 problem, took = tried(target, data)
                 count[name] += 1
+                highest = max(highest, _peak())
                 slowest[name] = max(slowest[name], took)
                 kind = (name, problem.rstrip().rpartition("\n")[2][:60])
                 if problem and kind not in found:
@@ -122,7 +145,7 @@ def main() -> int:
     for name in targets:
         rate = count[name] / max(spent.get(name, 0), 1e-9)
         print(f"{name:24}{count[name]:10} inputs {rate:9.0f}/s  slowest {slowest[name]:.3f} s")
-    peak = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss << 10
+    peak = max(highest, _peak())
     total = sum(count.values())
     print(
         f"{total} inputs, {total / options.seconds:.0f}/s, {peak >> 20} MiB, {len(found)} findings"

@@ -212,6 +212,14 @@ def _references(data: bytes) -> None:
     end.feed(data)
 
 
+def _pictures() -> tuple[bytes, ...]:
+    """A JPEG in one scan and, where OpenCV is, one in several."""
+    once = jpeg.encode(Image(_PIXELS))
+    if cv2 is None:
+        return (once,)
+    return once, cv2.imencode(".jpg", _PIXELS, (cv2.IMWRITE_JPEG_PROGRESSIVE, 1))[1].tobytes()
+
+
 _MPI = tuple(
     magic + b"/out\r\nvm____pid____4711\r\ntag#0$description#5\r\n"
     for magic in (b"MPI_____", b"MPIBCAST")
@@ -816,9 +824,7 @@ TARGETS = {
     ),
     "login curve": Target(curve_login.greet, curve_login.GREETINGS, refusals=(YarpError, Stalled)),
     "boxes curve": Target(curve_login.unbox, curve_login.BOXES),
-    "payload": Target(
-        _payload, (b'[1, "two", {"a": [3.5]}]', b"\xff\0", jpeg.encode(Image(_PIXELS)))
-    ),
+    "payload": Target(_payload, (b'[1, "two", {"a": [3.5]}]', b"\xff\0", *_pictures())),
     **{
         f"dialling zmq+{role}": Target(
             _dial(f"zmq+{role}"), _SOCKETS, refusals=(YarpError, Stalled)

@@ -32,6 +32,35 @@ def test_colours_survive_nearly() -> None:
     assert distance(image.array, COLOUR) < 6
 
 
+@pytest.mark.parametrize("width", [32, 37])
+def test_scans_that_go_over_the_picture_again_and_again(
+    width: int, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """What is kept from scan to scan is more than the pixels are."""
+    cv2 = pytest.importorskip("cv2", reason="pip install opencv-python-headless")
+    full = (cv2.IMWRITE_JPEG_SAMPLING_FACTOR, cv2.IMWRITE_JPEG_SAMPLING_FACTOR_444)
+    colour = np.ascontiguousarray(COLOUR[:, :width, ::-1])
+    _, encoded = cv2.imencode(".jpg", colour, (cv2.IMWRITE_JPEG_PROGRESSIVE, 1, *full))
+    data = encoded.tobytes()
+    assert distance(shown(data).array, COLOUR[:, :width]) < 6
+    monkeypatch.setenv("YARPY_MAX_PICTURE", str(24 * width * 6 - 1))
+    with pytest.raises(DecodeError, match=r"several scans: .* bytes are kept .*MAX_PICTURE"):
+        jpeg.decode(data)
+    _, encoded = cv2.imencode(".jpg", colour, full)
+    at_once = encoded.tobytes()
+    assert distance(shown(at_once).array, COLOUR[:, :width]) < 6
+    head = at_once.index(b"\xff\xda\0\x0c\x03")
+    with pytest.raises(DecodeError, match="several scans"):  # the first has one colour of three
+        jpeg.decode(at_once[:head] + b"\xff\xda\0\x08\x01\x01\0\0\x3f\0" + at_once[head + 14 :])
+
+
+def test_rows_are_padded_with_zeros() -> None:
+    row = 8 * ((37 * 3 + 7) // 8)
+    rows = np.frombuffer(jpeg.decode(PICTURE)[60:], "u1").reshape(24, row)
+    assert not rows[:, 37 * 3 :].any()
+    assert rows[:, : 37 * 3].any(axis=1).all()
+
+
 def test_grey_stays_grey() -> None:
     image = shown(jpeg.encode(Image(GREY)))
     assert image.code == "mono"

@@ -24,6 +24,9 @@ _APP0 = 0xE0
 _COM = 0xFE
 _SOS = 0xDA
 _EOI = 0xD9
+_AT_ONCE: Final = (0xC0, 0xC1)  # frames whose colours may come in one scan, as most do
+#: numbers that a pixel has in a file, of all its colours
+_NUMBERS: Final = {"Gray": 1.0, "420": 1.5, "411": 1.5, "422": 2.0, "440": 2.0}
 _ALONE: Final = frozenset((0x01, 0xD8, *range(0xD0, 0xD8)))  # markers without a length
 _MAX_COMMENT: Final = 65533
 
@@ -54,13 +57,14 @@ def decode(data: bytes | bytearray | memoryview, limit: int = 1 << 30) -> memory
     """The wire form of the picture (what `Image.from_wire` takes): mono if grey, else rgb.
 
     DecodeError if it is no JPEG, is damaged or cut off, or has more bytes of pixels than `limit` or
-    YARPY_MAX_PICTURE.
+    YARPY_MAX_PICTURE. What comes in several scans is kept until the last, two bytes a number: these
+    may be YARPY_MAX_PICTURE too.
     """
     import numpy as np
     import simplejpeg
 
     try:
-        height, width, colours, _ = simplejpeg.decode_jpeg_header(data)
+        height, width, colours, sampling = simplejpeg.decode_jpeg_header(data)
         depth = 1 if str(colours).lower().startswith("gr") else 3
         row = -(-width * depth // QUANTUM) * QUANTUM
         limit = min(limit, limits().picture)
@@ -71,13 +75,19 @@ def decode(data: bytes | bytearray | memoryview, limit: int = 1 << 30) -> memory
             )
         if bytes(data).count(b"\xff\xda") > JPEG_SCANS:
             raise DecodeError(f"a JPEG of more than {JPEG_SCANS} scans")
+        kept = int(2 * width * height * _NUMBERS.get(sampling, 4.0))
+        if kept > limits().picture and not _comes_at_once(data):
+            raise DecodeError(
+                f"a JPEG of {width} times {height} pixels in several scans: {kept} bytes are kept "
+                f"from scan to scan; the limit is {limits().picture} (YARPY_MAX_PICTURE)"
+            )
         wire = bytearray(_HEAD_SIZE + row * height)
         pixels = np.ndarray((height, width, depth), "u1", wire, _HEAD_SIZE, (row, depth, 1))
-        shades = "GRAY" if depth == 1 else "RGB"
-        if row == width * depth:
-            simplejpeg.decode_jpeg(data, shades, buffer=memoryview(wire)[_HEAD_SIZE:])
-        else:
-            pixels[...] = simplejpeg.decode_jpeg(data, shades)
+        rows = memoryview(wire)[_HEAD_SIZE:]
+        size = width * depth
+        simplejpeg.decode_jpeg(data, "GRAY" if depth == 1 else "RGB", buffer=rows[: size * height])
+        if row != size:
+            _spread(rows, size, row, height)
     except DecodeError:
         raise
     except KeyError as error:  # simplejpeg on a subsampling that is unusual
@@ -87,6 +97,27 @@ def decode(data: bytes | bytearray | memoryview, limit: int = 1 << 30) -> memory
     image = Image(pixels if depth == 3 else pixels[..., 0])
     wire[:_HEAD_SIZE] = image.to_wire()[0]
     return memoryview(wire)
+
+
+def _comes_at_once(data: bytes | bytearray | memoryview) -> bool:
+    """Return whether the first scan of a file has all of its colours, so that nothing is kept."""
+    at, kind, colours = 2, 0, b""
+    while at + 10 <= len(data) and data[at] == 0xFF:
+        marker, body = data[at + 1], at + 4
+        if marker == _SOS:
+            return kind in _AT_ONCE and data[body : body + 1] == colours
+        if 0xC0 <= marker <= 0xCF and marker not in (0xC4, 0xC8, 0xCC):
+            kind, colours = marker, bytes(data[body + 5 : body + 6])
+        at += 2 + int.from_bytes(data[at + 2 : body], "big")
+    return False
+
+
+def _spread(rows: memoryview, size: int, row: int, height: int) -> None:
+    """Move rows of `size` bytes that lie close together to where they begin `row` bytes apart."""
+    padding = bytes(row - size)
+    for number in range(height - 1, -1, -1):
+        rows[number * row : number * row + size] = rows[number * size : (number + 1) * size]
+        rows[number * row + size : (number + 1) * row] = padding
 
 
 def comment(data: bytes | bytearray | memoryview) -> str:
