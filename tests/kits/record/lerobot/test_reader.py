@@ -84,6 +84,13 @@ def test_a_part(folder: Path) -> None:
             ]
 
 
+def test_a_set_that_says_it_goes_on_for_ever(folder: Path) -> None:
+    rewrite(folder / EPISODES, lambda columns: columns.update(dataset_to_index=[5, 10**15]))
+    with record.open(folder) as found:
+        assert len([*found.messages([STATE])]) == 8
+        assert "ends before frame 8" in found.damages[0]
+
+
 def test_there_and_back(folder: Path, tmp_path: Path) -> None:
     """The set as a recording, and that as a set again."""
     with record.open(folder) as found:

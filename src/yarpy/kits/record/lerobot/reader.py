@@ -188,9 +188,11 @@ class LeRobotStorage:
                     shown = self._guarded(self._pictures(episode, one, first, last))
                     series.append(stack.enter_context(closing(shown)))
                 for frame in range(first, last):
-                    for values in series:
-                        for port, value in next(values, ()):
-                            yield self._message(port, frame, value)
+                    found = [item for values in series for item in next(values, ())]
+                    if not found:  # all that there is, whatever the set says
+                        break
+                    for port, value in found:
+                        yield self._message(port, frame, value)
 
     def _frame(self, moment: int, episode: Episode) -> int:
         """Return the first frame of an episode that is not before a moment."""
