@@ -622,7 +622,7 @@ def _tensor(data: bytes) -> object:
     with zipfile.ZipFile(out, "w") as file:
         file.writestr("archive/data.pkl", data)
         file.writestr("archive/data/0", bytes(24))
-    return as_floats(read_tensor(out.getvalue())).tolist()
+    return np.array(as_floats(read_tensor(out.getvalue())))
 
 
 _LUA_BODIES = (
