@@ -5,27 +5,15 @@ our server -> client of C++ -> server of C++ -> our client
 
 from __future__ import annotations
 
-from collections.abc import Iterator
-from contextlib import contextmanager
-
 import numpy as np
 import pytest
 from support.cpp import CppYarp
-from support.cpp_device import PATIENT, cpp_device, device_host
+from support.cpp_device import PATIENT, between, device_host
 from support.wait import wait_until
 
 from yarpy.kits import devices
 
 pytestmark = pytest.mark.peer("g++")
-
-
-@contextmanager
-def between(network: CppYarp, server: str, client: str, **options: object) -> Iterator[None]:
-    """C++ in the middle: its client of /ours, served again as /cpp."""
-    options = {"name": "/cpp", "local": "/between", "remote": "/ours", **options}
-    with cpp_device(network, server, subdevice=client, **options) as process:
-        assert "not available" not in process.stdout, process.stdout + process.stderr
-        yield
 
 
 def test_channels(network: CppYarp) -> None:

@@ -59,8 +59,11 @@ _NEWER = {
 }
 #: Servers that 3.9 opens without what they serve; a robot interface attaches it.
 _ATTACHED = (
-    *("battery_nws_yarp", "localization2D_nws_yarp", "map2D_nws_yarp", "odometry2D_nws_yarp"),
-    *("serialPort_nws_yarp", "speechSynthesizer_nws_yarp", "speechTranscription_nws_yarp"),
+    *("audioRecorder_nws_yarp", "battery_nws_yarp", "localization2D_nws_yarp", "map2D_nws_yarp"),
+    *("odometry2D_nws_yarp",),
+    *("navigation2D_nws_yarp", "serialPort_nws_yarp", "speechSynthesizer_nws_yarp"),
+    *("speechTranscription_nws_yarp", "chatBot_nws_yarp", "LLM_nws_yarp"),
+    *("frameTransformGet_nws_yarp", "frameTransformSet_nws_yarp"),
 )
 
 #: A device of our own in C++: the one that `inner` names, given on once it has heard of its server.
@@ -105,6 +108,7 @@ public:
     bool open(yarp::os::Searchable& config) override {
         yarp::os::Property options;
         options.fromString(config.toString());
+        options.unput("wrapped");
         options.put("device", config.find("subdevice").asString());
         if (!inner.open(options)) return false;
         options.put("device", config.find("outer").asString());
@@ -153,3 +157,12 @@ def cpp_device(programs: CppYarp, device: str, **options: object) -> Iterator[Pr
     with Process(command, env=programs.environment, cwd=programs.home) as process:
         process.wait_line("device active in background|not available", timeout=30)
         yield process
+
+
+@contextlib.contextmanager
+def between(programs: CppYarp, server: str, client: str, /, **options: object) -> Iterator[None]:
+    """C++ in the middle: its client of /ours, served again as /cpp."""
+    options = {"name": "/cpp", "local": "/between", "remote": "/ours", **options}
+    with cpp_device(programs, server, subdevice=client, **options) as process:
+        assert "not available" not in process.stdout, process.stdout + process.stderr
+        yield

@@ -44,6 +44,12 @@ def test_as_3_9_has_it(server, names):
         assert put.call(nothing, timeout=HANG) == "err5"
         assert put.call(Bottle(["deleteTransformRPC", "base", "cam"]), timeout=HANG) == "ok"
         assert get.call(Bottle(["getTransformsRPC"]), timeout=HANG) == [Vocab("ok"), []]
+        # The client of C++ names the frame first; a star is any.
+        for first, second in (("cam", "base"), ("base", "*"), ("*", "cam"), ("*", "*")):
+            assert put.call(Bottle(["setTransformRPC", CAMERA]), timeout=HANG) == "ok"
+            question = Bottle(["deleteTransformRPC", first, second])
+            assert put.call(question, timeout=HANG) == "ok"
+            assert get.call(Bottle(["getTransformsRPC"]), timeout=HANG) == [Vocab("ok"), []]
         assert put.call(Bottle(["setTransformRPC", CAMERA[:5]]), timeout=HANG)[0] == "fail"
 
 

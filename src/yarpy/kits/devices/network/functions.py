@@ -10,11 +10,12 @@ from __future__ import annotations
 import inspect
 import sys
 from collections.abc import Callable
+from functools import cached_property
 from typing import Any, ClassVar, Final
 
 from yarpy.data.value import Buffer
 from yarpy.data.walker import Walker
-from yarpy.kits.devices.network.model import Interface, Member
+from yarpy.kits.devices.network.model import Interface, Member, Oldest
 from yarpy.kits.devices.service import DeviceService
 from yarpy.kits.devices.status import newest
 from yarpy.kits.thrift.kind import Nested, vocab
@@ -79,9 +80,18 @@ class StatusMethod(Method):
         """The function that finds the end of its answers, which need be no Bottles."""
         return StatusEnd
 
+    #: what servers before YARP 3.10 say otherwise
+    oldest: Oldest | None = None
+
+    @cached_property
+    def asks_floats(self) -> bool:
+        """True if the server has to be known first, and has to know that yarpy asks."""
+        return self.oldest is not None or super().asks_floats
+
     def read_answer(self, data: Buffer) -> Any:
         """The status and the results. DecodeError."""
-        return super().read_answer(newest(data, self.result is not Status))
+        data = newest(data, self.result is not Status)
+        return super().read_answer(self.oldest.read(self.name, data) if self.oldest else data)
 
 
 def functions_of(interface: type[Interface]) -> type[Functions]:
@@ -120,7 +130,8 @@ def _made(interface: type[Interface]) -> type[Functions]:
     for name, known in made._methods.items():
         function = vars(made)[name]
         if answers[function.member] is not None:
-            made._methods[name] = StatusMethod(name, function, known._names)
+            made._methods[name] = found = StatusMethod(name, function, known._names)
+            found.oldest = interface.OLDEST
         if interface.members[function.member].whole:
             made._methods[name].words = [name]
     return made

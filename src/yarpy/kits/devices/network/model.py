@@ -37,6 +37,7 @@ from dataclasses import dataclass
 from importlib import import_module
 from typing import Any, ClassVar, Final, Self, TypeVar, get_args, get_origin
 
+from yarpy.data.value import Buffer
 from yarpy.errors import LocalProtocolError
 from yarpy.kits.devices.closeable import Closeable
 from yarpy.names.base import NameClient
@@ -121,6 +122,15 @@ class Member:
         return bound.args[1:]
 
 
+@dataclass(frozen=True, slots=True)
+class Oldest:
+    """The answers of programs before YARP 3.10, where they differ by more than the status: `made`
+    of those of today, and `read` as those of a function."""
+
+    made: Callable[[Buffer], Buffer]
+    read: Callable[[str, Buffer], Buffer]
+
+
 class Interface:
     """The base of all interfaces, and of the clients that `connect` returns."""
 
@@ -135,6 +145,8 @@ class Interface:
     WORDS: ClassVar[str] = ""
     #: what is answered to words that are about no member: the numbers behind `is`
     TOLD: ClassVar[dict[str, tuple[int, ...]]] = {}
+    #: what programs before YARP 3.10 say otherwise
+    OLDEST: ClassVar[Oldest | None] = None
     #: the members, by name
     members: ClassVar[dict[str, Member]] = {}
 

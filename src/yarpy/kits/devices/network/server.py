@@ -18,6 +18,7 @@ from typing import Any
 from yarpy.data.bottle import Bottle
 from yarpy.data.sig.sound import Sound
 from yarpy.data.stamp import Stamp
+from yarpy.data.value import Buffer
 from yarpy.data.yarp4 import to_yarp4
 from yarpy.errors import DecodeError
 from yarpy.kits.devices.access import Access
@@ -66,7 +67,7 @@ class Server(Closeable):
         with ExitStack() as resources:
             if any(each.function for each in interface.members.values()):
                 functions = functions_of(interface)(self._perform)
-                functions.before = older if newer else oldest
+                functions.before = older if newer else partial(_oldest, interface)
                 functions._yarp = (3, 12, 0) if newer else (3, 10, 0)  # type: ignore[misc]
                 if interface.WORDS:
                     functions.said = self._said
@@ -186,6 +187,12 @@ class Server(Closeable):
     def _next_stamp(self) -> Stamp:
         self._stamp = self._stamp.next(time.time())
         return self._stamp
+
+
+def _oldest(interface: type[Interface], answer: Buffer) -> Buffer:
+    """An answer as programs before YARP 3.10 want it."""
+    answer = oldest(answer)
+    return interface.OLDEST.made(answer) if interface.OLDEST else answer
 
 
 def _status(answer: type[Any], code: str) -> Any:

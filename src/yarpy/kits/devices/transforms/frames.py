@@ -62,14 +62,17 @@ class Frames:
             self._known = known
 
     def remove(self, frame: str, parent: str) -> bool:
-        """Forget where it is; whether that was known."""
+        """Forget where it is; whether that was known. `*` stands for every frame or parent, and
+        none of them is well too. The two are found in either order, as clients of C++ have both."""
+
+        def goes(each: Transform) -> bool:
+            there = frame in ("*", each.target) and parent in ("*", each.source)
+            return there or (each.source, each.target) == (frame, parent)
+
         with self._lock:
             known = self._alive()
-            found = known.get(frame)
-            if found is None or found.source != parent:
-                return False
-            self._known = {name: each for name, each in known.items() if name != frame}
-            return True
+            self._known = {name: each for name, each in known.items() if not goes(each)}
+            return len(self._known) < len(known) or "*" in (frame, parent)
 
     def clear(self) -> None:
         """Forget everything."""
