@@ -116,6 +116,7 @@ MQTT_USER: Final = 1 << 13  # bytes of user properties that are kept of a messag
 MQTT_WILL: Final = 1 << 16  # bytes of a client's last message
 MQTT_UNRELEASED: Final = 1024  # messages with QoS 2 of one client that are under way
 ZENOH_ATTACHMENT: Final = 1 << 13  # bytes that are kept of what is attached to a message
+ZENOH_PARAMETERS: Final = 1 << 13  # letters of a question's parameters
 ZMQ_PREFIX: Final = 1 << 12  # bytes of a subscription
 ZMQ_SUBSCRIPTIONS: Final = 1024  # of one peer
 ZMQ_HELD: Final = 1 << 16  # bytes of its subscriptions

@@ -5,14 +5,18 @@ import os
 import signal
 import subprocess
 import sys
+import time
 
 import pytest
 from support.cpp import CppYarp
+from support.lasted import lasted
+from support.port import addresses
 from support.process import Process
 from support.ros_graph import ros_graph
 from support.wait import HANG, wait_until
 
 import yarpy
+from yarpy.link.send.slow_reader import STRANGERS
 from yarpy.peers.ros.node import Node
 
 
@@ -97,6 +101,69 @@ def test_a_stopped_subscriber_holds_up_nobody(tmp_path_factory: pytest.TempPathF
                 assert min(behind) == 0 and max(behind) > 0
             finally:
                 program.kill()
+
+
+COUNTER = """
+import rospy, sys
+from std_msgs.msg import String
+rospy.init_node(sys.argv[1], disable_signals=True)
+rospy.Subscriber("/pictures", String, lambda m: print("heard", m.data.split()[0], flush=True))
+rospy.spin()
+"""
+
+
+@pytest.mark.peer("ros", "rosmaster")
+def test_who_writes_without_waiting_serves_the_other_subscribers_of_rospy(
+    tmp_path_factory: pytest.TempPathFactory,
+) -> None:
+    """Where no messages wait for subscribers, `timeout=0` drops what one of them does not take."""
+    with (
+        ros_graph(tmp_path_factory.mktemp("ros")) as graph,
+        Node("/eye", master=graph.uri) as eye,
+        graph.python(COUNTER, "stopped") as stopped,
+        graph.python(COUNTER, "other") as other,
+    ):
+        pictures = eye.publisher("/pictures", "std_msgs/String", queue_size=0)
+        wait_until(lambda: len(pictures.outputs) == 2, HANG, "both have subscribed")
+        stopped.signal(signal.SIGSTOP)
+        longest = 0.0
+        for number in range(60):  # 30 MB: more than any buffer of the system holds
+            begun = time.monotonic()
+            pictures.write([f"{number} " + "x" * 500_000], timeout=0.0)
+            longest = max(longest, lasted(begun))
+            other.wait_line(f"heard {number}$")
+        assert longest < STRANGERS  # for so long it would wait otherwise
+        drops = {link.target: link.stats.drops for link in pictures.outputs}
+        assert drops["/other"] == 0 and drops["/stopped"] > 0
+        stopped.signal(signal.SIGCONT)
+        wait_until(
+            lambda: pictures.write(["last"], timeout=0.0) and "heard last\n" in stopped.stdout,
+            HANG,
+            "it goes on where it was stopped",
+        )
+
+
+@pytest.mark.peer("ros", "rosmaster")
+@pytest.mark.parametrize("bind", ["", "local"])
+def test_a_topic_of_the_command_line_listens_where_it_says(
+    tmp_path_factory: pytest.TempPathFactory, bind: str
+) -> None:
+    """`yarpy write` with a topic alone: its port and that of its node, for rospy."""
+    said, where = ("this computer alone", "127.0.0.1") if bind else ("all networks", "0.0.0.0")
+    with (
+        ros_graph(tmp_path_factory.mktemp("ros")) as graph,
+        graph.python(COUNTER.replace("/pictures", "/chatter"), "hearer") as hearer,
+        graph.yarpy("write", "/chatter@/talker~std_msgs/String", YARPY_BIND=bind) as talker,
+    ):
+        for number in (1, 2):
+            talker.wait_line(f"active at tcp://.*, open to {said}$", count=number)
+        assert addresses(talker.pid, "tcp") == [where] * 2
+
+        def heard() -> bool:
+            talker.write_line("hello")
+            return "heard hello\n" in hearer.stdout
+
+        wait_until(heard, HANG, "rospy hears it")
 
 
 AGAIN = """

@@ -16,6 +16,7 @@ from support.wait import HANG, wait_until
 
 import yarpy
 from yarpy.data.sig import jpeg
+from yarpy.link.send import outbound
 
 zmq = pytest.importorskip("zmq", reason="needs pyzmq (pip install pyzmq)")
 from zmq.utils import z85  # noqa: E402
@@ -343,6 +344,38 @@ def test_beyond_the_high_water_mark_the_newest_is_dropped(
     assert link.counter.replaced == 0
     first = yarpy.data.json.from_json(slow.recv_multipart()[1])[0]
     assert first == "000"
+
+
+def test_a_pull_that_takes_nothing_is_cut_off_and_a_subscriber_misses_nothing(
+    out: yarpy.Port, sockets: Sockets, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """As with `send` of a PUSH `write` waits, but the SUB has the message by then."""
+    monkeypatch.setattr(outbound, "STRANGERS", 0.5)
+    slow = sockets.connected(zmq.PULL, out, RCVHWM=1, RCVBUF=4096)
+    wait_until(lambda: len(out.outputs) == 1)
+    near = sockets.subscriber(out, b"")
+    body = bytes(200_000)
+    for number in range(60):  # 12 MB: more than the buffers of the system hold
+        out.write([f"{number:02d}", body])
+        frames = near.recv_multipart()
+        assert yarpy.data.json.from_json(frames[1])[0] == f"{number:02d}"
+    assert [link.carrier for link in out.outputs] == ["zmq+sub"]
+    assert out.stats.outputs[0].drops == 0
+    assert yarpy.data.json.from_json(slow.recv())[0] == "00"
+
+
+def test_who_writes_without_waiting_drops_what_a_pull_does_not_take(
+    out: yarpy.Port, sockets: Sockets
+) -> None:
+    pull = sockets.connected(zmq.PULL, out, RCVHWM=1, RCVBUF=4096)
+    wait_until(lambda: len(out.outputs) == 1)
+    body = bytes(200_000)
+    for number in range(60):
+        out.write([f"{number:02d}", body], timeout=0)
+    drops = out.stats.outputs[0].drops
+    assert 0 < drops < 60
+    found = [yarpy.data.json.from_json(pull.recv())[0] for _ in range(60 - drops)]
+    assert found[0] == "00" and found == sorted(found)
 
 
 def test_a_pull_that_was_restarted_is_dialled_again(out: yarpy.Port, sockets: Sockets) -> None:

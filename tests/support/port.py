@@ -6,9 +6,11 @@ per process; a block is free for TCP and for UDP. Where tests run side by side (
 process has a part of the range for itself.
 """
 
+import contextlib
 import os
 import random
 import socket
+from ipaddress import ip_address
 from pathlib import Path
 
 _LOWEST = 20_000
@@ -33,6 +35,21 @@ def free_block(size: int) -> int:
             _given.update(block)
             return first
     raise OSError(f"no {size} consecutive free ports between {_LOWEST} and {_ceiling()}")
+
+
+def addresses(pid: int, kind: str) -> list[str]:
+    """The addresses at which a program listens, for connections with `tcp`, or has sockets of
+    `udp`."""
+    inodes = set()
+    for descriptor in Path(f"/proc/{pid}/fd").iterdir():
+        with contextlib.suppress(FileNotFoundError):  # it was closed meanwhile
+            inodes.add(os.readlink(descriptor).removeprefix("socket:[").rstrip("]"))
+    rows = Path(f"/proc/{pid}/net/{kind}").read_text("ascii").splitlines()[1:]
+    return [
+        str(ip_address(bytes.fromhex(words[1].partition(":")[0])[::-1]))
+        for words in map(str.split, rows)
+        if words[9] in inodes and words[3] in ("0A", "07")
+    ]
 
 
 def _range() -> tuple[int, int]:

@@ -105,6 +105,40 @@ def test_what_comes() -> None:
         assert (end.result.key, end.result.value) == (DATA, value)
 
 
+@pytest.mark.parametrize(
+    ("encoding", "payload", "value"),
+    [
+        ("zenoh/bytes", b"42", 42),
+        ("application/json", b"42", 42),
+        ("text/plain", b"42", "42"),
+        ("text/plain;charset=utf-8", b"[1]", "[1]"),
+        ("text/plain", b"\xff", b"\xff"),
+        ("zenoh/string", b"", ""),
+        ("application/octet-stream", b"42", b"42"),
+    ],
+)
+def test_what_comes_as_text_or_bytes_is_that(encoding: str, payload: bytes, value: object) -> None:
+    carrier, end = opened("zenoh+sub")
+    end.begin(carrier.decode(end.stream))
+    end.feed(Incoming(payload, encoding=encoding, attachment=b"7 1.5"))
+    assert (end.result.value, end.result.envelope) == (value, "7 1.5")
+    assert type(end.result.value) is type(value)
+
+
+@pytest.mark.parametrize("spec", ["zenoh+sub+srv", "zenoh+sub+srv+raw"])
+def test_a_question_without_a_payload_asks_with_its_parameters(spec: str) -> None:
+    carrier, end = opened(spec)
+    end.begin(carrier.decode(end.stream))
+    asked = [("x", "1"), ("name", "left arm"), ("quick", "")]
+    end.feed(Incoming(b"", place="robot/arm?x=1;...", parameters=asked))
+    assert end.result.value == [["x", 1], ["name", "left arm"], ["quick", ""]]
+    assert end.result.as_(dict) == {"x": 1, "name": "left arm", "quick": ""}
+    assert end.result.source == "/zenoh://robot/arm?x=1;..."
+    end.begin(carrier.decode(end.stream))
+    end.feed(Incoming(b"", parameters=[]))
+    assert end.result.value == []
+
+
 def test_asking() -> None:
     carrier, end = opened("zenoh+srv")
     carrier.encode(end.stream, Packet(["get", 1]))

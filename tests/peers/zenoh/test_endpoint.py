@@ -11,7 +11,7 @@ import zenoh
 from support.wait import HANG, wait_until
 
 import yarpy
-from yarpy.limit import ZENOH_ATTACHMENT
+from yarpy.limit import ZENOH_ATTACHMENT, ZENOH_PARAMETERS
 from yarpy.peers.zenoh import endpoint
 from yarpy.peers.zenoh.endpoint import Publisher, Server, Subscriber
 from yarpy.peers.zenoh.transport import share
@@ -95,6 +95,46 @@ def test_a_port_answers_a_plain_get(client: Any) -> None:
 
         wait_until(lambda: ask(payload="[1]") == ['["ok", 1]'])
         assert ask() == ['["ok"]']
+
+
+def test_what_a_plain_program_says_of_its_payload_counts(client: Any) -> None:
+    with yarpy.BufferedPort("/in", strict=True) as reader:
+        reader.connect("zenoh+sub://robot/typed")
+        waits = zenoh.CongestionControl.BLOCK  # where there is no room
+        publisher = client.declare_publisher("robot/typed", congestion_control=waits)
+        wait_until(lambda: publisher.matching_status.matching)
+        publisher.put("42", encoding="text/plain")
+        publisher.put(b"42", encoding="application/octet-stream")
+        publisher.put("42", encoding="application/json")
+        publisher.put("42")
+        assert [reader.read(timeout=HANG).value for _ in range(4)] == ["42", b"42", 42, 42]
+
+
+def test_the_parameters_of_a_plain_get_reach_the_port(client: Any) -> None:
+    heard: list[tuple[Any, str]] = []
+
+    def answer(message: yarpy.Message) -> list[str]:
+        heard.append((message.value, message.source))
+        return ["ok"]
+
+    with yarpy.RpcServer("/server", answer) as server:
+        server.listen_to("zenoh+srv://robot/asked")
+
+        def ask(selector: str, **said: Any) -> bool:
+            return any(reply.ok is not None for reply in client.get(selector, **said))
+
+        wait_until(lambda: ask("robot/asked"))
+        del heard[:]
+        assert ask("robot/asked?x=1;name=left arm")
+        assert ask("robot/asked?x=1", payload="[2]")
+        assert ask("robot/asked", payload="43", encoding="text/plain")
+        assert heard[0] == (
+            [["x", 1], ["name", "left arm"]],
+            "/zenoh://robot/asked?x=1;name=left arm",
+        )
+        assert heard[1] == ([2], "/zenoh://robot/asked?x=1")
+        assert heard[2][0] == "43" and "?" not in heard[2][1]
+        assert not ask("robot/asked?x=" + "1" * ZENOH_PARAMETERS)
 
 
 def test_a_port_asks_a_plain_queryable(client: Any) -> None:

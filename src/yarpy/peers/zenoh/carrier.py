@@ -9,8 +9,9 @@
     zenoh+sub+delete://...                       a DELETE is a message, too: [delete]
     zenoh+priority.REAL_TIME+block+express://... what is put, as publishers of Zenoh say it
 
-Rules: those of `hosted`; `yarpy.zenoh` has the endpoints. `payload` says what a payload holds. An
-envelope is the attachment, both ways.
+Rules: those of `hosted`; `yarpy.zenoh` has the endpoints. What came as text or as bytes, by its
+encoding, is that; `payload` says what any other payload holds. An envelope is the attachment, both
+ways. A get without a payload asks with its parameters; the source has those of each.
 """
 
 from __future__ import annotations
@@ -21,7 +22,7 @@ from typing import Any, Final
 
 from yarpy.carriers.base import Carrier, Limits
 from yarpy.carriers.hosted import LISTENS, SERVICE, Hosted, failure
-from yarpy.carriers.payload import JPEG, message_of, payload_of, to_payload
+from yarpy.carriers.payload import JPEG, message_of, payload_of, to_payload, value_of
 from yarpy.data import codec
 from yarpy.data.failure import error_of, raised
 from yarpy.data.value import Vocab
@@ -46,6 +47,8 @@ JSON: Final = "application/json"
 PICTURE: Final = "image/jpeg"
 TEXT: Final = "text/plain"  # of what went wrong; behind it the kind of an exception
 BYTES: Final = "zenoh/bytes"  # which says nothing
+_TEXTS: Final = (TEXT, "zenoh/string")
+_OCTETS: Final = "application/octet-stream"
 _CONTROL: Final = re.compile(r"[\x00-\x1f\x7f]")
 _UNTOLD: Final = (bytes, bytearray, memoryview, Encoded)  # the last holds anything
 
@@ -70,7 +73,9 @@ class Outgoing:
 class Incoming:
     """A message, question or answer that came. `asked`: the question, to be answered. `failure`:
     why there is no answer, `raised`: by which kind of exception. `place`: the key that it was put
-    at. `attachment`: what came beside it. `deleted`: there is nothing at that key any more."""
+    at; of a question with parameters, its selector. `attachment`: what came beside it. `deleted`:
+    there is nothing at that key any more. `encoding`: its type, as Zenoh writes it. `parameters`:
+    of a question without a payload."""
 
     payload: Buffer
     asked: Any = None
@@ -79,6 +84,8 @@ class Incoming:
     place: str = ""
     attachment: bytes = b""
     deleted: bool = False
+    encoding: str = BYTES
+    parameters: list[tuple[str, str]] | None = None
 
     @property
     def size(self) -> int:
@@ -137,7 +144,13 @@ class Zenoh(Hosted):
     def _heard(self, key: str, came: Incoming) -> Message:
         if came.deleted:
             return Message(key, b"".join(codec.encode([Vocab(DELETE)])))
-        message = Message(key, came.payload) if self.raw else message_of(key, [came.payload])
+        if came.parameters is not None:
+            asked = [[name, value_of(value.encode())] for name, value in came.parameters]
+            message = Message(key, b"".join(codec.encode(asked)))
+        elif self.raw:
+            message = Message(key, came.payload)
+        else:
+            message = _typed(key, came)
         if came.attachment:
             text = came.attachment.decode("utf-8", "replace")
             message.envelope = _CONTROL.split(text, maxsplit=1)[0]  # a line, as everywhere
@@ -185,7 +198,10 @@ class Server(Zenoh):
     def decode(self, stream: ByteStream) -> Steps[Message]:
         came = yield from self.read_object(stream)
         self._asked = came.asked
-        return self._heard(CALL, came)
+        message = self._heard(CALL, came)
+        if came.place:
+            message.source = f"/{self.name}://{readable(came.place)}"
+        return message
 
     def encode_reply(self, stream: ByteStream, value: object) -> None:
         asked, self._asked = self._asked, None
@@ -198,6 +214,19 @@ class Server(Zenoh):
         else:
             payload = payload_of(value)
             self.write_object(stream, Outgoing(payload, encoding_of(payload, value), asked))
+
+
+def _typed(key: str, came: Incoming) -> Message:
+    """Return the message in a payload, as its encoding says if that says enough."""
+    form = came.encoding.partition(";")[0]
+    if form == _OCTETS:
+        return Message(key, b"".join(codec.encode(bytes(came.payload))))
+    if form in _TEXTS:
+        try:
+            return Message(key, b"".join(codec.encode(str(came.payload, "utf-8"))))
+        except UnicodeDecodeError:
+            pass
+    return message_of(key, [came.payload])
 
 
 def encoding_of(payload: Buffer, value: object) -> str:

@@ -12,7 +12,7 @@ from __future__ import annotations
 
 from typing import Any, Final
 
-from yarpy.limit import ZENOH_ATTACHMENT
+from yarpy.limit import ZENOH_ATTACHMENT, ZENOH_PARAMETERS
 from yarpy.log import logger, readable
 from yarpy.peers.zenoh.carrier import BLOCK, DELETE, EXPRESS, TEXT, Incoming, Outgoing
 from yarpy.peers.zenoh.exchange import undeclare
@@ -91,8 +91,9 @@ class Subscriber(Endpoint):
     def _heard(self, sample: Any) -> None:
         place = str(sample.key_expr)
         if sample.kind == load().SampleKind.PUT:
-            beside = _attached(sample)
-            self.put(Incoming(sample.payload.to_bytes(), place=place, attachment=beside), KEPT)
+            beside, form = _attached(sample), str(sample.encoding)
+            body = sample.payload.to_bytes()
+            self.put(Incoming(body, place=place, attachment=beside, encoding=form), KEPT)
         elif DELETE in self._spec.tokens:
             self.put(Incoming(b"", place=place, deleted=True), KEPT)
 
@@ -141,7 +142,7 @@ class Asker(Endpoint):
 def _answer(reply: Any) -> Incoming:
     good = reply.ok
     if good is not None:
-        return Incoming(good.payload.to_bytes())
+        return Incoming(good.payload.to_bytes(), encoding=str(good.encoding))
     why = readable(reply.err.payload.to_bytes()[:1000].decode("utf-8", "replace"))
     form, _, kind = str(reply.err.encoding).partition(";")
     named = form == TEXT and kind.isidentifier() and why.startswith(f"{kind}: ")
@@ -160,9 +161,17 @@ class Server(Endpoint):
             self.dropped += 1
             query.reply_err(b"too many questions are waiting")
             return
-        payload = query.payload
-        body = b"[]" if payload is None else payload.to_bytes()
-        self.put(Incoming(body, query, attachment=_attached(query)), MOST_QUESTIONS)
+        said = Incoming(b"", query, attachment=_attached(query), encoding=str(query.encoding))
+        if not query.parameters.is_empty():
+            said.place = str(query.selector)
+            if len(said.place) > ZENOH_PARAMETERS:
+                query.reply_err(b"more than %d letters of parameters" % ZENOH_PARAMETERS)
+                return
+        if query.payload is None:
+            said.parameters = [*query.parameters]
+        else:
+            said.payload = query.payload.to_bytes()
+        self.put(said, MOST_QUESTIONS)
 
     def give(self, item: Outgoing) -> None:
         query = item.to

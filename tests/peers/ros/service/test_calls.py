@@ -1,12 +1,15 @@
 """Connections to services: how many there are, and for how long a call waits."""
 
+import os
 import socket
+import sys
 import threading
 import time
 from collections.abc import Iterator
 from typing import Any
 
 import pytest
+from support.process import Process
 from support.ros_graph import RosGraph
 from support.wait import HANG, wait_until
 
@@ -152,3 +155,79 @@ def test_waiting_for_a_service_asks_the_master_now_and_then(
     asked.clear()
     assert not calls.wait("/any", 0)
     assert asked == [ENOUGH]
+
+
+ROSPY_SERVER = """
+import rospy, sys
+from std_srvs.srv import Trigger, TriggerResponse
+rospy.init_node("mortal", disable_signals=True)
+rospy.Service("/mortal_service", Trigger, lambda asked: TriggerResponse(True, sys.argv[1]))
+print("serves", flush=True)
+rospy.spin()
+"""
+OUR_SERVER = """
+import sys, threading, yarpy
+node = yarpy.ros.Node("/mortal")
+node.service("/mortal_service", "std_srvs/Trigger", lambda asked: [True, sys.argv[1]])
+print("serves", flush=True)
+threading.Event().wait()
+"""
+KEEPER = """
+import rospy, sys
+from std_srvs.srv import Trigger
+rospy.init_node("keeper", disable_signals=True)
+proxies = {}
+for number, line in enumerate(sys.stdin, 1):
+    if line not in proxies:
+        rospy.wait_for_service("/mortal_service")
+        proxies[line] = rospy.ServiceProxy("/mortal_service", Trigger, persistent=True)
+    try:
+        print(number, proxies[line]().message, flush=True)
+    except Exception as error:
+        print(number, type(error).__name__, flush=True)
+"""
+
+
+def test_a_persistent_proxy_of_rospy_has_the_same_fate_with_our_server(graph: RosGraph) -> None:
+    """Of rospy the proxy never looks for its server again: whoever needs that makes another one."""
+    environment = {**os.environ, "PYTHONPATH": os.pathsep.join(sys.path)}
+
+    def life(ours: bool) -> list[str]:
+        def server(word: str) -> Process:
+            if not ours:
+                return graph.python(ROSPY_SERVER, word)
+            return Process([sys.executable, "-c", OUR_SERVER, word], env=environment)
+
+        def asked(which: str) -> str:
+            said.append(which)
+            keeper.write_line(which)
+            return keeper.wait_line(rf"^{len(said)} (.*)$", stream="out")[1]
+
+        said: list[str] = []
+        with graph.python(KEEPER) as keeper:
+            with server("one") as first:
+                first.wait_line("serves")
+                heard = [asked("old"), asked("old")]
+                first.kill()
+                heard += [asked("old"), asked("old")]
+            with server("two") as second:
+                second.wait_line("serves")
+                return [*heard, asked("old"), asked("new"), asked("old"), asked("new")]
+
+    theirs = life(ours=False)
+    assert theirs[:2] == ["one", "one"] and theirs[5] == theirs[7] == "two"
+    assert life(ours=True) == theirs
+
+
+def test_our_client_finds_a_server_of_rospy_that_was_killed_and_has_come_back(
+    graph: RosGraph,
+) -> None:
+    with Node("/faithful") as node:
+        for word in ("one", "two"):
+            with graph.python(ROSPY_SERVER, word) as server:
+                server.wait_line("serves")
+                assert node.call("/mortal_service", TRIGGER, timeout=HANG).message == word
+                assert node.call("/mortal_service", TRIGGER, timeout=HANG).message == word
+                server.kill()
+                with pytest.raises(LinkClosed):
+                    node.call("/mortal_service", TRIGGER, timeout=HANG)

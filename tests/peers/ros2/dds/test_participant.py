@@ -11,13 +11,15 @@ from pathlib import Path
 import numpy as np
 import pytest
 from support import dds_peer, fast_dds
+from support.port import addresses
 from support.process import Process
 from support.wait import HANG, wait_until
 
 import yarpy
 from yarpy.errors import UnknownName
+from yarpy.names.address import is_loopback, local_addresses
 from yarpy.names.default import DEFAULT
-from yarpy.peers.ros2.dds.participant import LOCAL, is_local
+from yarpy.peers.ros2.dds.participant import LOCAL, settings
 
 
 @pytest.fixture(autouse=True)
@@ -41,10 +43,67 @@ class Peer(Process):
         return [json.loads(line) for line in self.stdout.splitlines()]
 
 
-def test_where_others_are_looked_for() -> None:
-    assert is_local({"ROS_LOCALHOST_ONLY": "1"})
-    assert is_local({"ROS_AUTOMATIC_DISCOVERY_RANGE": "localhost"})
-    assert not is_local({"ROS_LOCALHOST_ONLY": "0", "ROS_AUTOMATIC_DISCOVERY_RANGE": "SUBNET"})
+SUBNET = {"ROS_AUTOMATIC_DISCOVERY_RANGE": "SUBNET"}
+
+
+@pytest.mark.parametrize(
+    ("environment", "bound", "told", "who"),
+    [
+        ({"ROS_LOCALHOST_ONLY": "1"}, "", LOCAL, "this computer alone"),
+        ({"ROS_AUTOMATIC_DISCOVERY_RANGE": "localhost"}, "", LOCAL, "this computer alone"),
+        ({"ROS_LOCALHOST_ONLY": "0", **SUBNET}, "", "", "all networks"),
+        ({}, "", "", "all networks"),
+        ({}, "127.0.0.1", LOCAL, "this computer alone"),
+        (SUBNET, "127.0.0.1", "", "all networks"),
+        ({"CYCLONEDDS_URI": "<x/>"}, "127.0.0.1", "", "CYCLONEDDS_URI"),
+        ({}, "192.168.1.7", '<NetworkInterface address="192.168.1.7"/>', ""),
+    ],
+)
+def test_where_others_are_looked_for(
+    environment: dict[str, str], bound: str, told: str, who: str
+) -> None:
+    found = settings(environment, bound)
+    assert (told in found[0] if told else not found[0]) and who in found[1]
+
+
+OUTWARD = [one for one in local_addresses() if "." in one and not is_loopback(one)]
+
+
+SAYS = """
+import logging, sys, yarpy
+logging.basicConfig(level=logging.INFO)
+with yarpy.Port("/out", names=yarpy.LocalNames()) as out:
+    out.connect("ros2+dds://chatter~std_msgs/msg/String", timeout=float(sys.argv[1]))
+    for line in sys.stdin:
+        out.write(line.strip())
+"""
+
+
+@pytest.mark.skipif(not OUTWARD, reason="this computer has no address but the loopback")
+@pytest.mark.skipif(sys.platform != "linux", reason="needs Linux' /proc")
+@pytest.mark.parametrize("bind", ["", "local"])
+def test_a_program_sends_where_its_ports_listen(bind: str) -> None:
+    """And is heard there: the other program is at the loopback, and ours tells it where it is."""
+    said = "this computer alone" if bind else "all networks"
+    ours = {**os.environ, "YARPY_BIND": bind, "CYCLONEDDS_URI": ""}
+    with (
+        Peer("hear", "/chatter") as hears,
+        Process([sys.executable, "-c", SAYS, str(HANG)], env=ours) as says,
+    ):
+        says.wait_line(f"DDS is spoken in domain 0, open to {said}")
+        assert (OUTWARD[0] in addresses(says.pid, "udp")) == (not bind)
+        if bind:
+            wait_until(lambda: says.write_line("hello") or "hello" in hears.said)
+
+
+def test_a_domain_of_this_computer_is_joined_again(monkeypatch: pytest.MonkeyPatch) -> None:
+    """The settings are the library's for as long as anybody is in the domain."""
+    monkeypatch.delenv("CYCLONEDDS_URI")
+    monkeypatch.setenv("ROS_LOCALHOST_ONLY", "1")
+    for _ in range(2):
+        with yarpy.Port("/out") as out:
+            out.connect("ros2+dds+domain.7://chatter~std_msgs/msg/String")
+            assert len(out.outputs) == 1
 
 
 def test_a_picture() -> None:

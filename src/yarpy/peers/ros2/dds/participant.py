@@ -4,16 +4,18 @@
 
 Rules: the library is given bytes, and gives bytes: its own way of writing and reading messages
 takes many times as long. DDS opens sockets and looks for others by multicast, in the local network
-unless ROS_LOCALHOST_ONLY, ROS_AUTOMATIC_DISCOVERY_RANGE or CYCLONEDDS_URI say otherwise.
+unless CYCLONEDDS_URI, ROS_LOCALHOST_ONLY, ROS_AUTOMATIC_DISCOVERY_RANGE or YARPY_BIND say
+otherwise, the first of them that is set.
 """
 
 from __future__ import annotations
 
-import os
 import threading
 from collections.abc import Iterator, Mapping
+from os import environ
 from typing import Any, Final
 
+from yarpy.log import logger
 from yarpy.peers.ros2.dds.discovery import Discovery
 from yarpy.peers.ros2.dds.library import delete
 from yarpy.peers.ros2.dds.pump import Pump
@@ -23,6 +25,9 @@ from yarpy.peers.ros2.key import Key
 from yarpy.peers.ros2.message.library import hash_of
 from yarpy.peers.ros2.name import Node
 from yarpy.peers.ros2.token import PUBLISHER, SUBSCRIBER, Token
+from yarpy.transports.bind import listening_host, reach
+
+log = logger("yarpy.ros2")
 
 WORD: Final = "dds"
 LOCAL: Final = """\
@@ -30,12 +35,23 @@ LOCAL: Final = """\
 <AllowMulticast>false</AllowMulticast></General><Discovery>
 <ParticipantIndex>auto</ParticipantIndex><MaxAutoParticipantIndex>32</MaxAutoParticipantIndex>
 <Peers><Peer address="localhost"/></Peers></Discovery></Domain></CycloneDDS>"""
+_AT: Final = """\
+<CycloneDDS><Domain><General><Interfaces><NetworkInterface address="{}"/></Interfaces>
+</General></Domain></CycloneDDS>"""
 
 
-def is_local(environment: Mapping[str, str]) -> bool:
-    """Return whether only programs of this computer are to be found."""
-    reach = environment.get("ROS_AUTOMATIC_DISCOVERY_RANGE", "").upper()
-    return environment.get("ROS_LOCALHOST_ONLY") == "1" or reach == "LOCALHOST"
+def settings(environment: Mapping[str, str], host: str) -> tuple[str, str]:
+    """Return what the library is told, "" for nothing, and who reaches us, for people. `host`:
+    where ports listen."""
+    if environment.get("CYCLONEDDS_URI"):
+        return "", "whom CYCLONEDDS_URI lets in"
+    found = environment.get("ROS_AUTOMATIC_DISCOVERY_RANGE", "").upper()
+    only = environment.get("ROS_LOCALHOST_ONLY", "")
+    if only == "1" or found == "LOCALHOST" or (host.startswith("127.") and not only and not found):
+        return LOCAL, "this computer alone"
+    if host and not only and not found:
+        return _AT.format(host), reach()
+    return "", "all networks"
 
 
 class Participant:
@@ -48,10 +64,15 @@ class Participant:
         self.number = domain
         self.users = 0
         self._domain: Any = None
-        if is_local(os.environ) and not os.environ.get("CYCLONEDDS_URI"):
-            self._domain = domains.Domain(domain, LOCAL)
+        told, who = settings(environ, listening_host())
+        if told:
+            self._domain = domains.Domain(domain, told)
         qos = core.Qos(core.Policy.Userdata(b"enclave=/;"))
-        self.dds: Any = domains.DomainParticipant(domain, qos=qos)
+        try:
+            self.dds: Any = domains.DomainParticipant(domain, qos=qos)
+        except core.DDSException:
+            self._leave_domain()
+            raise
         self._published: Any = builtin.BuiltinDataReader(
             self.dds, builtin.BuiltinTopicDcpsPublication
         )
@@ -72,6 +93,7 @@ class Participant:
 
         self.pump = Pump(self.dds)
         self.discovery = Discovery(self.dds, self.pump)
+        log.info("DDS is spoken in domain %d, open to %s", domain, who)
 
     def endpoints(self, kind: str) -> Iterator[Any]:
         """Yield the writers of all programs, ours too, or with SUBSCRIBER their readers."""
@@ -107,6 +129,12 @@ class Participant:
         self.discovery.close()
         self.pump.close()
         delete(self.dds)
+        self._leave_domain()
+
+    def _leave_domain(self) -> None:
+        """Delete the domain, if we made it: the library refuses to make it twice."""
+        if self._domain is not None:
+            delete(self._domain)
 
     def class_of(self, kind: Any, what: str = "msg") -> Any:
         """The class of the library for a type, which carries finished bytes; `what`: `srv` for the
