@@ -148,7 +148,12 @@ def test_waiting_for_a_service_asks_the_master_now_and_then(
             asked.append(timeout)
             return "there" if len(asked) == 4 else None
 
-    monkeypatch.setattr("yarpy.peers.ros.service.calls.time.sleep", slept.append)
+    asking, sleep = threading.get_ident(), time.sleep
+
+    def noted(seconds: float) -> None:
+        (slept.append if threading.get_ident() == asking else sleep)(seconds)
+
+    monkeypatch.setattr("yarpy.peers.ros.service.calls.time.sleep", noted)
     calls = Calls("/waiting", Master("http://127.0.0.1:1/"))
     assert calls.wait("/any", None)
     assert slept == [LOOK] * 3
