@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 import pytest
-from support.wait import wait_until
+from support.wait import HANG, wait_until
 
 import yarpy
 from yarpy import registry
@@ -71,7 +71,7 @@ def test_over_ports(carrier: str, value: Any, expected: Any) -> None:
     ):
         out.connect("/in", carrier)
         assert out.write(value, yarpy.Stamp(4, 1.5)) == 1
-        message = in_.read(timeout=10)
+        message = in_.read(HANG)
         assert message.stamp == yarpy.Stamp(4, 1.5)
         if isinstance(expected, tuple):
             assert message.value.array.shape == expected

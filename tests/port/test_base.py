@@ -113,7 +113,8 @@ def test_waiting_for_a_port_that_comes_later(names: LocalNames) -> None:
         started = time.monotonic()
         with pytest.raises(UnknownName):
             out.connect("/in", timeout=0.1)
-        assert time.monotonic() - started >= 0.1 and lasted(started) < 2
+        assert time.monotonic() - started > 0.05  # a clock of Windows ticks every 16 ms
+        assert lasted(started) < 2
         later: list[Port] = []
         threading.Timer(0.1, lambda: later.append(Port("/in", names=names))).start()
         out.connect("/in", timeout=5)

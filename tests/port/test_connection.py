@@ -43,8 +43,7 @@ def test_rate_and_jitter_are_measured(names: LocalNames) -> None:
             in_.read(timeout=5)
         for connection in (*out.outputs, *in_.inputs):
             stats = connection.stats
-            assert stats.rate > 100
-            assert 0 < stats.period < 0.1
+            assert 0 < stats.rate <= 1 / stats.period
             assert stats.jitter >= 0
 
 

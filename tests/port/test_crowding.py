@@ -40,7 +40,9 @@ def test_unfinished_messages_share_a_limit(
     names = LocalNames()
     with Port("/port", names=names) as port, Port("/out", names=names) as out, ExitStack() as stack:
         for number in range(6):
-            driver, _ = greet(port.contact, Route(f"/slow/{number}", "/port", carrier))
+            driver, _ = greet(
+                port.contact, Route(f"/slow/{number}", "/port", carrier), timeout=HANG
+            )
             stack.callback(driver.transport.close)
             driver.transport.send(PARTS[carrier])
         wait_until(lambda: caplog.text.count(budget.SETTING) >= 4)

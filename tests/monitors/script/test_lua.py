@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 import time
 from collections.abc import Callable
 from pathlib import Path
@@ -282,7 +283,7 @@ return t"""
 )  # fmt: skip
 def test_misuse_is_an_error_at_the_line_of_the_script(body: str) -> None:
     script = load(f'require("yarp")\nPortMonitor.accept = function(thing)\n  {body}\nend')
-    with pytest.raises(ScriptError, match=r"^/nowhere/gate\.lua:3: "):
+    with pytest.raises(ScriptError, match=f"^{re.escape(str(PATH))}:3: "):
         script.accept(picture("mono", (2, 2), "u1"))
 
 
@@ -467,7 +468,8 @@ def test_disk_and_programs_are_out_of_reach(tmp_path: Path, body: str) -> None:
 
 def test_owner_may_let_scripts_have_all_of_lua(tmp_path: Path) -> None:
     (tmp_path / "x").write_text("seen")
-    text = f"PortMonitor.accept = function() return io.open('{tmp_path}/x'):read() == 'seen' end"
+    file = (tmp_path / "x").as_posix()
+    text = f"PortMonitor.accept = function() return io.open('{file}'):read() == 'seen' end"
     assert LuaScript(tmp_path / "a.lua", text.encode(), Control(), system=True).accept(message())
     text = "PortMonitor.accept = function() return os.time() > 0 and os.clock() >= 0 end"
     assert LuaScript(tmp_path / "a.lua", text.encode(), Control()).accept(message())
@@ -479,19 +481,19 @@ def test_owner_may_let_scripts_have_all_of_lua(tmp_path: Path) -> None:
 @pytest.mark.parametrize(
     ("text", "expected"),
     [
-        ("PortMonitor.accept = function(", "/nowhere/gate.lua:1: "),
-        ("x = 1\nnosuch()", "/nowhere/gate.lua:2: attempt to call a nil value"),
+        ("PortMonitor.accept = function(", f"{PATH}:1: "),
+        ("x = 1\nnosuch()", f"{PATH}:2: attempt to call a nil value"),
         ("PortMonitor = nil", "PortMonitor must stay a table"),
         ("require('nosuchmodule')", "module 'nosuchmodule' not found"),
         ("\x1bLua", "attempt to load a binary chunk"),
-        ("while true do end", "/nowhere/gate.lua:1: it runs for more than"),
+        ("while true do end", f"{PATH}:1: it runs for more than"),
     ],
 )
 def test_file_that_cannot_run_says_why(text: str, expected: str) -> None:
     with pytest.raises(ScriptError) as caught:
         load(text, limit=10_000)
     assert expected in str(caught.value)
-    assert "/nowhere/gate.lua" in str(caught.value)
+    assert str(PATH) in str(caught.value)
 
 
 ENDLESS = [
@@ -546,7 +548,7 @@ def test_script_is_stopped_and_goes_on_with_the_next_message(body: str) -> None:
     text = f"PortMonitor.accept = function(t) {fine} {body} end"
     script = load(text, limit=2_000_000, memory=8 << 20)
     for _ in range(2):
-        with pytest.raises(ScriptError, match="nowhere/gate") as caught:
+        with pytest.raises(ScriptError, match=r"nowhere.gate") as caught:
             script.accept(message("hi"))
         assert len(str(caught.value)) > len(str(PATH)) + 5
         assert script.accept(message("hi", "ho"))
@@ -586,7 +588,7 @@ def test_no_function_of_the_library_takes_longer_than_a_script_may(
     fine = "if t:asBottle():size() > 1 then return true end"
     script = load(f"PortMonitor.accept = function(t) {fine} {body} end", memory=16 << 20)
     for _ in range(2):
-        with pytest.raises(ScriptError, match="nowhere/gate"):
+        with pytest.raises(ScriptError, match=r"nowhere.gate"):
             script.accept(message("hi"))
         assert script.accept(message("hi", "ho"))
 
