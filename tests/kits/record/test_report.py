@@ -38,7 +38,7 @@ def test_silences_are_looked_for(tmp_path: Path) -> None:
 
 
 def test_losses_of_finished_and_unfinished_files(tmp_path: Path) -> None:
-    note = {"what": "lost", "port": "/a", "count": 3, "missed": 2}
+    note = {"what": "lost", "port": "/a", "count": 3, "missed": 2, "replaced": 4}
     for finished in (True, False):
         path = tmp_path / f"{finished}.mcap"
         with McapWriter(path) as writer:
@@ -49,12 +49,13 @@ def test_losses_of_finished_and_unfinished_files(tmp_path: Path) -> None:
             writer.flush()
             if finished:
                 told = {"lost": '{"/a": 3}', "missed": '{"/a": 2}', "left out": '{"/a": 9}'}
+                told["replaced"] = '{"/a": 4}'
                 writer.add_metadata("yarpy", {**told, "host": "lab"})
                 writer.close()
             with record.open(path) as found:
                 told_now = report(found)
             (port,) = told_now.ports
-            assert (port.lost, port.missed) == (3, 2)
+            assert (port.lost, port.missed, port.replaced) == (3, 2, 4)
             assert port.left_out == (9 if finished else 0)
             text = "\n".join(lines(told_now))
             assert "3 lost, 2 never arrived" in text and "0.010 s  mark fell" in text

@@ -12,6 +12,7 @@ from datetime import UTC, datetime
 from typing import Any
 
 from yarpy.kits.record.capture.disk_space import size_text
+from yarpy.kits.record.capture.loss import KINDS, WORDS
 from yarpy.kits.record.envelope import SECOND
 from yarpy.kits.record.mcap.storage import McapStorage
 from yarpy.kits.record.recording import Recording
@@ -20,7 +21,7 @@ from yarpy.log import readable
 
 @dataclass
 class PortReport:
-    """A port: `rate` in messages a second; `lost`, `missed` and `left_out` as `Count` has them;
+    """A port: `rate` in messages a second; `lost`, `missed` ... as `Count` has them;
     `gap` is the longest silence in seconds and `gap_at` when it began, None if that was not
     looked for."""
 
@@ -31,6 +32,7 @@ class PortReport:
     lost: int = 0
     missed: int = 0
     left_out: int = 0
+    replaced: int = 0
     gap: float | None = None
     gap_at: float | None = None
     playable: bool = True
@@ -63,7 +65,7 @@ def report(recording: Recording, check: bool = False) -> Report:
     for facts in recording.ports.values():
         rate = (facts.messages - 1) / duration if duration > 0 and facts.messages > 1 else 0.0
         one = PortReport(facts.name, facts.kinds, facts.messages, rate, playable=facts.playable)
-        one.lost, one.missed, one.left_out = losses.get(facts.name, (0, 0, 0))
+        one.lost, one.missed, one.left_out, one.replaced = losses.get(facts.name, [0] * len(KINDS))
         if facts.name in gaps:
             one.gap, one.gap_at = gaps[facts.name]
         ports.append(one)
@@ -95,14 +97,13 @@ def report(recording: Recording, check: bool = False) -> Report:
     )
 
 
-def _losses(recording: Recording, notes: list[dict[str, Any]]) -> dict[str, tuple[int, int, int]]:
-    """Return what was lost, missed and left out of each port. What a finished file says at its end
+def _losses(recording: Recording, notes: list[dict[str, Any]]) -> dict[str, list[int]]:
+    """Return the numbers of KINDS of each port. What a finished file says at its end
     is all; of an unfinished one there are the notes."""
     found: dict[str, list[int]] = {}
-    noted = {"lost": 0, "missed": 1, "left out": 2}
     finished = False
     for storage in recording.storages:
-        for key, place in noted.items():
+        for place, key in enumerate(KINDS):
             try:
                 told = json.loads(storage.facts.get(key, "null"))
             except (ValueError, RecursionError):
@@ -110,18 +111,18 @@ def _losses(recording: Recording, notes: list[dict[str, Any]]) -> dict[str, tupl
             if isinstance(told, dict):
                 finished = True
                 for port, count in told.items():
-                    found.setdefault(port, [0, 0, 0])[place] += _count(count)
+                    found.setdefault(port, [0] * len(KINDS))[place] += _count(count)
     if not finished or not recording.complete:
         counted: dict[str, list[int]] = {}
         for note in notes:
             if note.get("what") == "lost" and isinstance(note.get("port"), str):
-                one = counted.setdefault(note["port"], [0, 0, 0])
-                one[0] += _count(note.get("count"))
-                one[1] += _count(note.get("missed"))
+                one = counted.setdefault(note["port"], [0] * len(KINDS))
+                for place, key in ((0, "count"), (1, "missed"), (3, "replaced")):
+                    one[place] += _count(note.get(key))
         for port, numbers in counted.items():
-            known = found.setdefault(port, [0, 0, 0])
+            known = found.setdefault(port, [0] * len(KINDS))
             known[:] = map(max, known, numbers)
-    return {port: (one[0], one[1], one[2]) for port, one in found.items()}
+    return found
 
 
 def _count(value: Any) -> int:
@@ -189,10 +190,8 @@ def _port(port: PortReport, begin: float) -> str:
     words = [f"{port.messages:8} messages", f"{port.rate:8.2f} Hz", " ".join(port.kinds)]
     odd = [
         f"{number} {word}"
-        for number, word in (
-            (port.lost, "lost"),
-            (port.missed, "never arrived"),
-            (port.left_out, "left out"),
+        for number, word in zip(
+            (port.lost, port.missed, port.left_out, port.replaced), WORDS, strict=True
         )
         if number
     ]

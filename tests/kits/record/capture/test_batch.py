@@ -1,5 +1,6 @@
 """What was given to the files and is not in the system's hands yet."""
 
+from contextlib import closing
 from pathlib import Path
 
 import pytest
@@ -9,6 +10,7 @@ from yarpy.kits.record.capture.batch import Batch
 from yarpy.kits.record.capture.output import Output
 from yarpy.kits.record.capture.queue import MessageQueue
 from yarpy.kits.record.mcap import writer
+from yarpy.kits.record.mcap.storage import McapStorage
 from yarpy.wire.message import DATA, Message
 
 
@@ -84,6 +86,23 @@ def test_what_envelopes_leave_out(output: Output) -> None:
     for queued in queue.take():
         batch.add(queued)
     assert queue.counts["/a"].missed == 2
+
+
+def test_what_was_in_a_file_that_is_gone_goes_into_the_next(output: Output) -> None:
+    queue = MessageQueue()
+    batch = Batch(queue, output)
+    for number in range(3):
+        put(queue, [number], f"{2 * number} 1")
+    for queued in queue.take():
+        batch.add(queued)
+    output.path.unlink()
+    output.leave()
+    batch.again()
+    batch.flush()
+    count = queue.counts["/a"]
+    assert (count.messages, count.lost, count.missed, queue.held) == (3, 0, 2, 0)
+    with closing(McapStorage(output.path)) as found:
+        assert [one.value for one in found.messages()] == [[0], [1], [2]]
 
 
 def test_what_no_file_takes_and_what_was_not_written_is_lost(

@@ -20,6 +20,9 @@ def test_losses_are_told_once() -> None:
     count.missed = 4
     losses.tell(lambda what, now: notes.append({**what, "now": now}), told.append, 8)
     assert (notes[1]["count"], notes[1]["missed"]) == (0, 3) and len(told) == 1
+    count.replaced = 6
+    losses.tell(lambda what, now: notes.append({**what, "now": now}), told.append, 9)
+    assert notes[2]["replaced"] == 6 and len(notes) == 3
 
 
 def test_each_file_has_its_own() -> None:
@@ -28,5 +31,5 @@ def test_each_file_has_its_own() -> None:
     found = [{key: json.loads(value) for key, value in losses.of_file().items()}]
     count.lost = 3
     found += [{key: json.loads(value) for key, value in losses.of_file().items()}]
-    assert found[0] == {"lost": {"/a": 2}, "missed": {}, "left out": {"/a": 5}}
-    assert found[1] == {"lost": {"/a": 1}, "missed": {}, "left out": {}}
+    assert found[0] == {"lost": {"/a": 2}, "missed": {}, "left out": {"/a": 5}, "replaced": {}}
+    assert found[1] == {"lost": {"/a": 1}, "missed": {}, "left out": {}, "replaced": {}}

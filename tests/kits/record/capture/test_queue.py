@@ -42,6 +42,30 @@ def test_full_memory_loses_and_counts() -> None:
     assert (count.messages, count.lost) == (3, 3)
 
 
+def test_newer_messages_replace_older_ones_that_wait() -> None:
+    size = len(payload_of("x" * 100)) + OVERHEAD
+    queue = MessageQueue(memory=4 * size, newest=["/cam/*"])
+    queue.put(message("x" * 100, "/arm", "0 1"))
+    for n in range(7):
+        queue.put(message("x" * 100, "/cam/left", f"{n} 1"))
+    queue.put(message("x" * 100, "/arm", "1 1"))
+    cam, arm = queue.counts["/cam/left"], queue.counts["/arm"]
+    assert (cam.messages, cam.replaced, cam.lost) == (3, 4, 0)
+    assert (arm.messages, arm.replaced, arm.lost) == (1, 0, 1)
+    assert cam.bytes == 3 * len(payload_of("x" * 100)) and queue.held == 4 * size
+    found = queue.take()
+    assert [(one.port, one.envelope[0]) for one in found] == [
+        ("/arm", "0"), ("/cam/left", "4"), ("/cam/left", "5"), ("/cam/left", "6"),
+    ]  # fmt: skip
+    assert [one.follows for one in found[1:]] == [False, True, True]
+    queue.put(message("x" * 100, "/cam/left", "7 1"))  # what is being written is not replaced
+    assert (cam.replaced, cam.lost) == (4, 1)
+    queue.free(queue.held)
+    queue.put(message("x" * 500, "/cam/left", "8 1"))
+    queue.put(message("x" * 10_000, "/cam/left", "9 1"))  # has no room at all
+    assert (cam.replaced, cam.lost, len(queue.take())) == (4, 2, 1)
+
+
 def test_what_could_not_be_written_is_lost() -> None:
     queue = MessageQueue()
     queue.put(message("abc"))

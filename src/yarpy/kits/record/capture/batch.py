@@ -39,8 +39,11 @@ class Batch:
 
     def add(self, queued: QueuedMessage) -> None:
         """Give a message to the output. Raises OSError."""
-        self._messages.append(queued)
         self.count_missed(queued)
+        self._give(queued)
+
+    def _give(self, queued: QueuedMessage) -> None:
+        self._messages.append(queued)
         try:
             self._output.add(queued)
         except LocalProtocolError:
@@ -72,6 +75,12 @@ class Batch:
         self._queue.free(sum(queued.size for queued in self._messages))
         self._messages.clear()
         self._since = 0.0
+
+    def again(self) -> None:
+        """Give all of it to the output once more: the file that had it is gone. Raises OSError."""
+        messages, self._messages, self._since = self._messages, [], 0.0
+        for queued in messages:
+            self._give(queued)
 
     def lose(self) -> None:
         """It is lost."""

@@ -7,11 +7,19 @@ from __future__ import annotations
 
 import json
 from collections.abc import Callable, Mapping
-from typing import Any, TypeAlias
+from typing import Any, Final, TypeAlias
 
 from yarpy.kits.record.capture.queue import Count
 
-_Numbers: TypeAlias = tuple[int, int, int]  # lost, missed, left out
+_Numbers: TypeAlias = tuple[int, int, int, int]
+KINDS: Final = ("lost", "missed", "left out", "replaced")
+WORDS: Final = ("lost", "never arrived", "left out", "replaced")  # for people
+_NOTHING: Final = (0, 0, 0, 0)
+
+
+def numbers_of(count: Count) -> _Numbers:
+    """Return the numbers of KINDS."""
+    return count.lost, count.missed, count.left_out, count.replaced
 
 
 class Losses:
@@ -30,22 +38,23 @@ class Losses:
     ) -> None:
         """Note what was lost since the last time, and tell people of it."""
         for port, count in dict(self._counts).items():
-            found = count.lost, count.missed, count.left_out
-            before = self._told.get(port, (0, 0, 0))
-            if found[:2] != before[:2]:
+            found = numbers_of(count)
+            before = self._told.get(port, _NOTHING)
+            lost, missed, _, replaced = (new - old for new, old in zip(found, before, strict=True))
+            if lost or missed or replaced:
                 self._told[port] = found
-                lost, missed = found[0] - before[0], found[1] - before[1]
-                note({"what": "lost", "port": port, "count": lost, "missed": missed}, now)
+                said = {"what": "lost", "port": port, "count": lost, "missed": missed}
+                note(said | ({"replaced": replaced} if replaced else {}), now)
                 if lost:
                     why = "the disk is too slow, the memory small, or the file gone"
                     tell(f"{lost} messages of {port} were lost: {why}")
 
     def of_file(self) -> dict[str, str]:
         """Return what was lost since the last file was finished, as JSON."""
-        found: dict[str, dict[str, int]] = {"lost": {}, "missed": {}, "left out": {}}
+        found: dict[str, dict[str, int]] = {kind: {} for kind in KINDS}
         for port, count in dict(self._counts).items():
-            now = count.lost, count.missed, count.left_out
-            before = self._kept.get(port, (0, 0, 0))
+            now = numbers_of(count)
+            before = self._kept.get(port, _NOTHING)
             self._kept[port] = now
             for key, new, old in zip(found, now, before, strict=True):
                 if new > old:

@@ -1,7 +1,8 @@
 """The queue of a recorder: messages wait here, in bounded memory, for the thread that writes.
 
 Rules: the threads of connections put, one thread takes. Nobody who puts ever waits: where memory is
-full the message is lost, counted, and its sender knows nothing of it. Messages are numbered by
+full the message is lost, or replaces older ones of its port, counted, and its sender knows nothing
+of it. Messages are numbered by
 nothing but their order; `received_ns` never runs backwards within what is taken at once, unless the
 clock of the machine does.
 """
@@ -11,7 +12,8 @@ from __future__ import annotations
 import fnmatch
 import threading
 import time
-from collections.abc import Callable, Mapping
+from collections import deque
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Final, NamedTuple
 
@@ -39,13 +41,15 @@ class QueuedMessage(NamedTuple):
 @dataclass(slots=True)
 class Count:
     """The counts of a port: `messages` and `bytes` that were taken, `lost` for want of memory,
-    `left_out` to keep to a rate, `missed` that the counts of its envelopes say did not arrive."""
+    `replaced` by newer ones for want of it, `left_out` to keep to a rate, `missed` that the counts
+    of its envelopes say did not arrive."""
 
     messages: int = 0
     bytes: int = 0
     lost: int = 0
     left_out: int = 0
     missed: int = 0
+    replaced: int = 0
     last_ns: int = 0
     next_ns: int = 0  # before this, messages are left out
     sequence: int = -1  # of the envelope of the last one that was written
@@ -60,7 +64,8 @@ class Count:
 class MessageQueue:
     """Takes messages in, up to `memory` bytes that were not written yet.
 
-    rates: patterns of ports (`/cam/*`) with the messages a second that are taken of them. now: the
+    rates: patterns of ports (`/cam/*`) with the messages a second that are taken of them. newest:
+    patterns of those whose newest messages are worth more than older ones that still wait. now: the
     clock of the times of receipt, in nanoseconds.
     """
 
@@ -69,6 +74,7 @@ class MessageQueue:
         memory: int = MEMORY,
         rates: Mapping[str, float] | None = None,
         now: Callable[[], int] = time.time_ns,
+        newest: Sequence[str] = (),
     ) -> None:
         self._now = now
         self.memory = memory
@@ -77,7 +83,9 @@ class MessageQueue:
         self.held = 0  # bytes
         self._rates = dict(rates or {})
         self._periods: dict[str, int] = {}  # nanoseconds between messages of a port
-        self._waiting: list[QueuedMessage] = []
+        self._waiting: list[QueuedMessage | None] = []  # None was replaced
+        self._newest = tuple(newest)
+        self._places: dict[str, deque[int]] = {}  # of such ports, what waits
         self._ended = False
         self._lock = threading.Lock()  # links come from threads of their own
         self._urgent = threading.Event()
@@ -104,6 +112,9 @@ class MessageQueue:
         size = length + OVERHEAD
         with self._lock:
             count = self._count(port)
+            places = self._replaceable(port) if self._newest else None
+            while places and self.memory - size < self.held and size <= self.memory:
+                self._replace(count, places)
             if self.held + size > self.memory or length > LARGEST or self._ended:
                 count.refuse()
                 return
@@ -113,6 +124,8 @@ class MessageQueue:
             count.bytes += length
             count.last_ns = now
             follows, count.broken = not count.broken, False
+            if places is not None:
+                places.append(len(self._waiting))
             self._waiting.append(QueuedMessage(port, now, message.envelope, payload, size, follows))
             urgent = self.held > self.memory // 8
         if urgent:
@@ -124,6 +137,27 @@ class MessageQueue:
         if count is None:
             count = self.counts[port] = Count()
         return count
+
+    def _replaceable(self, port: str) -> deque[int] | None:
+        """Return where messages of a port wait, None if none of them is replaced."""
+        places = self._places.get(port)
+        if places is None and any(fnmatch.fnmatchcase(port, one) for one in self._newest):
+            places = self._places[port] = deque()
+        return places
+
+    def _replace(self, count: Count, places: deque[int]) -> None:
+        """Drop the oldest message of a port that waits; inside the lock."""
+        place = places.popleft()
+        old, self._waiting[place] = self._waiting[place], None
+        assert old is not None
+        self.held -= old.size
+        count.messages -= 1
+        count.bytes -= len(old.payload)
+        count.replaced += 1
+        if places and (after := self._waiting[places[0]]) is not None:
+            self._waiting[places[0]] = after._replace(follows=False)
+        else:
+            count.broken = True
 
     def _period(self, port: str) -> int:
         period = self._periods.get(port)
@@ -158,7 +192,8 @@ class MessageQueue:
         """Return what waits. Its memory counts until `free`."""
         with self._lock:
             queued, self._waiting = self._waiting, []
-        return queued
+            self._places.clear()
+        return [one for one in queued if one is not None]
 
     def end(self) -> list[QueuedMessage]:
         """Return what waits, and refuse what comes from now on."""

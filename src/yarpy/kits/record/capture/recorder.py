@@ -59,6 +59,7 @@ class Recorder:
     split, most: when a new file begins (`Split(bytes=10**9)`), and how many are kept, 0 for all.
     memory: bytes of messages that may wait for the disk.
     rates: the largest number of messages a second, by patterns of names: `{"/cam/*": 10}`.
+    newest: patterns of ports of which older messages make way for newer ones where memory is full.
     snapshot: write nothing but the last so many seconds, when `snapshot` is called; `memory` bounds
     them, too. triggers: regular expressions by ports: a message with a match calls it.
     paused: take nothing before `resume`, with which the recording begins.
@@ -84,6 +85,7 @@ class Recorder:
         most: int = 0,
         memory: int = MEMORY,
         rates: Mapping[str, float] | None = None,
+        newest: Sequence[str] = (),
         snapshot: float = 0.0,
         triggers: Mapping[str, str] | None = None,
         paused: bool = False,
@@ -105,7 +107,7 @@ class Recorder:
         elif triggers:
             raise LocalProtocolError("triggers are for snapshots: say how many seconds")
         attached = contents(attach)
-        self._queue = MessageQueue(memory, rates, now)
+        self._queue = MessageQueue(memory, rates, now, newest)
         self._queue.paused = paused
         self._tell = tell
         self._facts = {
@@ -282,7 +284,7 @@ class Recorder:
 
     def _write_on(self) -> None:
         queue, batch = self._queue, Batch(self._queue, self._output)
-        looked, step = 0.0, time.time_ns() - time.monotonic_ns()
+        looked, written, step = 0.0, 0, time.time_ns() - time.monotonic_ns()
         self._disk.look()
         try:
             while not self.failure:
@@ -297,8 +299,9 @@ class Recorder:
                     batch.flush()
                     self._wishes.popleft()()
                 now = time.monotonic()
-                if now - looked >= 1.0:
-                    looked = now
+                # A disk that may be full before a second is over is looked at sooner.
+                if now - looked >= 1.0 or self._output.size - written > self._disk.free // 4:
+                    looked, written = now, self._output.size
                     step = self._look_around(step, batch)
                 if last:
                     self._losses.tell(self._output.note, self._tell, self._now())
@@ -349,10 +352,11 @@ class Recorder:
             self._tell(f"{size_text(self._disk.free)} are left on the disk")
         if self._output.gone:
             gone = self._output.path
-            batch.lose()
             self._output.leave()
+            batch.again()
             self._notes.add("file gone", file=str(gone))
-            self._tell(f"{gone} was taken away: what follows goes into {self._output.path}")
+            path = self._output.path
+            self._tell(f"{gone} was taken away with what was in it: the rest goes into {path}")
         now = time.time_ns() - time.monotonic_ns()
         if abs(now - step) > CLOCK_STEP:
             self._notes.add("clock set", seconds=(now - step) / SECOND)

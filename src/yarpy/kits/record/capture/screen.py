@@ -11,6 +11,7 @@ from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Final
 
 from yarpy.kits.record.capture.disk_space import size_text
+from yarpy.kits.record.capture.loss import WORDS, numbers_of
 from yarpy.kits.record.capture.queue import Count
 from yarpy.log import readable
 
@@ -19,7 +20,7 @@ if TYPE_CHECKING:
 
 KEYS: Final = "space pause   s new file   m mark   q stop"
 SNAPSHOT_KEYS: Final = "space pause   s write the last seconds   m mark   q stop"
-TITLES: Final = ("msg/s", "messages", "size", "lost", "missed", "left out")
+TITLES: Final = ("msg/s", "messages", "size", "lost", "missed", "left out", "replaced")
 _WIDTH: Final = 10  # of a column of numbers
 _LINES: Final = 5  # around the table
 
@@ -131,7 +132,7 @@ def _cells(status: Status, name: str) -> list[str]:
     shown = (
         "gone" if name not in status.connected else f"{rate:.1f}" if rate < 100 else f"{rate:.0f}"
     )
-    numbers = (count.lost, count.missed, count.left_out)
+    numbers = numbers_of(count)
     return [shown, str(count.messages), size_text(count.bytes), *map(str, numbers)]
 
 
@@ -153,11 +154,7 @@ def summary(status: Status) -> list[str]:
     for name, count in sorted(status.counts.items()):
         odd = [
             f"{number} {word}"
-            for number, word in (
-                (count.lost, "lost"),
-                (count.missed, "never arrived"),
-                (count.left_out, "left out"),
-            )
+            for number, word in zip(numbers_of(count), WORDS, strict=True)
             if number
         ]
         tail = f" ({', '.join(odd)})" if odd else ""

@@ -90,6 +90,7 @@ def ports(recorder: Recorder) -> list[dict[str, Any]]:
                 "lost": 0 if count is None else count.lost,
                 "missed": 0 if count is None else count.missed,
                 "left": 0 if count is None else count.left_out,
+                "replaced": 0 if count is None else count.replaced,
             }
         )
     return found

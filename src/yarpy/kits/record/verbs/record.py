@@ -60,6 +60,8 @@ LEAST: Final = 1_000_000  # bytes of --memory
               type=click.Choice(["none", "lz4", "zstd"]), help="none, lz4 or zstd.")  # fmt: skip
 @click.option("--max-rate", "rates", multiple=True, metavar="PORT=N",
               help="Take N messages a second of a port (/cam/*=10) at most.")  # fmt: skip
+@click.option("--newest", multiple=True, metavar="PORT",
+              help="Where memory is full, its newer messages replace older ones.")  # fmt: skip
 @click.option(
     "--memory", default="256MB", metavar="SIZE", help="For messages that wait for the disk."
 )
@@ -92,6 +94,7 @@ def command(
     most: int | None,
     compression: str,
     rates: tuple[str, ...],
+    newest: tuple[str, ...],
     memory: str,
     snapshot: str | None,
     triggers: tuple[str, ...],
@@ -145,6 +148,7 @@ def command(
             most=most or 0,
             memory=parse_memory(memory),
             rates=dict(map(parse_rate, rates)),
+            newest=newest,
             snapshot=0.0 if snapshot is None else parse_time(snapshot),
             triggers=dict(map(parse_trigger, triggers)),
             paused=paused,
@@ -276,6 +280,8 @@ def status_of(recorder: Recorder, began: float, seen: Rates, news: Sequence[str]
 
 def facts(recorder: Recorder, status: Status) -> dict[str, object]:
     """Return what is printed as JSON at the end."""
+    from yarpy.kits.record.capture.loss import KINDS, numbers_of
+
     return {
         "files": [*map(str, recorder.files)],
         "seconds": round(status.seconds, 3),
@@ -285,9 +291,7 @@ def facts(recorder: Recorder, status: Status) -> dict[str, object]:
             name: {
                 "messages": count.messages,
                 "bytes": count.bytes,
-                "lost": count.lost,
-                "missed": count.missed,
-                "left out": count.left_out,
+                **dict(zip(KINDS, numbers_of(count), strict=True)),
             }
             for name, count in sorted(status.counts.items())
         },

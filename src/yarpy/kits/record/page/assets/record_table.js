@@ -45,7 +45,7 @@ export class Table {
     sorted.forEach((port, at) => {
       const row = this.row(port.name);
       row.className = port.there ? "" : port.wanted ? "waiting" : "gone";
-      const texts = [port.name, rate(port, old.get(port.name), passed), port.messages, size(port.bytes), port.lost, port.missed, port.left];
+      const texts = [port.name, rate(port, old.get(port.name), passed), port.messages, size(port.bytes), port.lost, port.missed, port.left, port.replaced];
       texts.forEach((text, column) => {
         const cell = row.cells[column];
         if (cell.textContent !== String(text)) cell.textContent = text;
@@ -53,14 +53,14 @@ export class Table {
       row.cells[4].classList.toggle("bad", port.lost > 0);
       if (this.body.children[at] !== row) this.body.insertBefore(row, this.body.children[at] ?? null);
     });
-    this.table.classList.toggle("oddities", ports.some((port) => port.missed || port.left));
+    this.table.classList.toggle("oddities", ports.some((port) => port.missed || port.left || port.replaced));
   }
 
   row(name) {
     let row = this.rows.get(name);
     if (row) return row;
     row = document.createElement("tr");
-    for (let column = 0; column < 7; column += 1) {
+    for (let column = 0; column < 8; column += 1) {
       const cell = row.insertCell();
       if (column) cell.className = column > 4 ? "number odd" : "number";
     }
