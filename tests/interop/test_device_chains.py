@@ -12,6 +12,7 @@ from support.cpp_device import PATIENT, between, device_host
 from support.wait import wait_until
 
 from yarpy.kits import devices
+from yarpy.kits.devices.interfaces.joypad import Point, Touch
 
 pytestmark = pytest.mark.peer("g++")
 
@@ -129,3 +130,6 @@ def test_a_joypad(network: CppYarp) -> None:
     ):
         assert client.button_count() == pad.button_count()
         assert client.axis_count() == pad.axis_count()
+        pad.state.hats, pad.state.touches = [4], [Touch([Point(0.5, -0.5)])]
+        wait_until(lambda: client.hats().value == [4])
+        wait_until(lambda: client.touches().value == [Touch([Point(0.5, -0.5)])])

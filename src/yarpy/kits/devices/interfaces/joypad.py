@@ -1,20 +1,24 @@
 """Joypad: axes, buttons, sticks, hats, trackballs and touch surfaces.
 
 Rules: from YARP 4 on ports send structs; readers of YARP 3 get plain vectors, which are read here,
-too. Positions are from -1 to 1.
+too. Those have one finger for each surface, and hats in a byte each behind the tag of two bytes.
+Positions are from -1 to 1.
 
 Source: IJoypadController of YARP 3.9 and 4.0.
 """
 
 from __future__ import annotations
 
+from struct import pack, unpack_from
 from typing import Self
 
 import yarpy
+from yarpy.data.value import INT16, LIST
 from yarpy.errors import DecodeError
 from yarpy.kits.devices.network.model import Interface, call, published
 from yarpy.kits.thrift.kind import i8, i16, i32
 from yarpy.kits.thrift.structure import Struct, new
+from yarpy.wire.message import Encoded
 
 
 class Point(Struct):
@@ -24,15 +28,19 @@ class Point(Struct):
     y: float = 0.0
 
 
+class Touch(Struct):
+    """The fingers on a surface."""
+
+    touches: list[Point] = new(list)
+
+
 class _Many(Struct):
     """The base of what ports send: numbers, or pairs of them."""
 
-    def older(self) -> yarpy.Vector:
+    def older(self) -> object:
         """Return the numbers, as programs of YARP 3 have them."""
-        found: list[float] = []
-        for each in self.value:  # type: ignore[attr-defined]
-            found += (each.x, each.y) if isinstance(each, Point) else (float(each),)
-        return yarpy.Vector(found)
+        values = self.value  # type: ignore[attr-defined]
+        return yarpy.Vector([number for each in values for number in _numbers(each)])
 
     @classmethod
     def from_wire(cls, view: bytes | bytearray | memoryview) -> Self:
@@ -50,6 +58,16 @@ class _Many(Struct):
         return [*numbers]
 
 
+def _numbers(each: float | Point | Touch) -> tuple[float, ...]:
+    if isinstance(each, Touch):
+        each = each.touches[0] if each.touches else Point()
+    return (each.x, each.y) if isinstance(each, Point) else (float(each),)
+
+
+def _points(numbers: list[float]) -> list[Point]:
+    return [Point(x, y) for x, y in zip(numbers[::2], numbers[1::2], strict=False)]
+
+
 class Numbers(_Many):
     """One for each axis or button."""
 
@@ -60,6 +78,18 @@ class Hats(_Many):
     """One for each hat: 1 up, 2 right, 4 down, 8 left, or the sum of two."""
 
     value: list[i8] = new(list)
+
+    def older(self) -> object:
+        """Return one byte for each, as programs of YARP 3 have them."""
+        values = bytes(each & 255 for each in self.value)
+        return Encoded(pack("<ii", LIST + INT16, len(values)) + values)
+
+    @classmethod
+    def from_wire(cls, view: bytes | bytearray | memoryview) -> Self:
+        """Read either form. DecodeError."""
+        if len(view) > 8 and unpack_from("<ii", view) == (LIST + INT16, len(view) - 8):
+            return cls([*view[8:]])
+        return super().from_wire(view)
 
     @classmethod
     def _of(cls, numbers: list[float]) -> list[object]:
@@ -73,20 +103,17 @@ class Points(_Many):
 
     @classmethod
     def _of(cls, numbers: list[float]) -> list[object]:
-        pairs = zip(numbers[::2], numbers[1::2], strict=False)
-        return [Point(x, y) for x, y in pairs]
+        return [*_points(numbers)]
 
 
-class Touch(Struct):
-    """The fingers on a surface."""
-
-    touches: list[Point] = new(list)
-
-
-class Touches(Struct):
+class Touches(_Many):
     """One for each surface."""
 
     value: list[Touch] = new(list)
+
+    @classmethod
+    def _of(cls, numbers: list[float]) -> list[object]:
+        return [Touch([each]) for each in _points(numbers)]
 
 
 class JoypadState(Struct):
