@@ -17,6 +17,7 @@ import pytest
 from support import multicast, peer
 from support.stage import STAGES, TESTS, stage_of
 from support.system import NO_MEMFD, NO_UNIX_SOCKETS
+from support.watchdog import TimeLimits
 
 from yarpy import log
 
@@ -45,6 +46,7 @@ def pytest_configure(config: pytest.Config) -> None:
     """Undo what a shell does to background jobs: programs that tests start would inherit it, and
     could not be interrupted."""
     config.addinivalue_line("markers", "peer(name, ...): needs these foreign programs")
+    config.pluginmanager.register(TimeLimits())
     if not hasattr(config, "workerinput"):
         peer.share()
         multicast.have_it()
@@ -78,9 +80,8 @@ def pytest_collection() -> Generator[None, object, object]:
     try:
         return (yield)
     finally:
-        gc.enable()
-        gc.collect()
         gc.freeze()
+        gc.enable()
 
 
 @pytest.hookimpl(tryfirst=True)

@@ -7,6 +7,7 @@ from dataclasses import replace
 from pathlib import Path
 
 import pytest
+from support.table import for_each
 
 from yarpy import registry
 from yarpy.facts import CarrierRow, Row
@@ -47,12 +48,15 @@ def test_what_a_class_recognises_its_row_lets_pass(row: CarrierRow) -> None:
     assert bool(taken) == bool(row.magic), "its magic is in the row, and only that"
 
 
-@pytest.mark.parametrize(("kind", "row"), ROWS, ids=[f"{kind}-{row.name}" for kind, row in ROWS])
-def test_what_ships_has_a_home_and_an_extra(kind: str, row: Row) -> None:
-    said = tomllib.loads((ROOT / "pyproject.toml").read_text())
+SAID = tomllib.loads((ROOT / "pyproject.toml").read_text("utf-8"))["project"]
+
+
+@for_each(ROWS)
+def test_what_ships_has_a_home_and_an_extra(named: tuple[str, Row]) -> None:
+    kind, row = named
     assert row.home
-    assert row.extra in ("", *said["project"]["optional-dependencies"])
-    assert f"yarpy.{kind}" in said["project"]["entry-points"], "a stranger's would not be found"
+    assert row.extra in ("", *SAID["optional-dependencies"])
+    assert f"yarpy.{kind}" in SAID["entry-points"], "a stranger's would not be found"
 
 
 def test_what_is_elsewhere_is_not_here() -> None:

@@ -5,6 +5,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 from support.message import bottles, kinds, walk
+from support.table import for_each
 from support.vectors import binaries, rows
 
 from yarpy.data import reader
@@ -22,7 +23,7 @@ def packed(*words):
     return struct.pack(f"<{len(words)}i", *words)
 
 
-@pytest.mark.parametrize("row", rows("bottle"), ids=lambda row: row["text"][:40])
+@for_each(rows("bottle"))
 def test_golden_messages(row):
     bottle = read_bottle(bytes.fromhex(row["binary"]))
     assert len(bottle) == row["size"]
@@ -30,7 +31,7 @@ def test_golden_messages(row):
     assert bottle.to_bytes() == bytes.fromhex(row["binary"])
 
 
-@pytest.mark.parametrize("message", GOLDEN, ids=lambda message: message[:24].hex())
+@for_each(GOLDEN)
 def test_truncated_anywhere(message):
     for size in range(len(message)):
         with pytest.raises(DecodeError):

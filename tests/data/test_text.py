@@ -6,6 +6,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 from support.message import bottles, texts
+from support.table import for_each
 from support.vectors import rows
 
 from yarpy.data.bottle import Bottle
@@ -14,7 +15,7 @@ from yarpy.data.value import Float32, Int8, Int64, Vocab
 from yarpy.errors import DecodeError
 
 
-@pytest.mark.parametrize("row", rows("bottle"), ids=lambda row: row["text"][:40])
+@for_each(rows("bottle"))
 def test_golden_texts(row):
     bottle = Bottle.from_text(row["text"])
     assert len(bottle) == row["size"]
@@ -23,7 +24,7 @@ def test_golden_texts(row):
     assert Bottle.from_text(row["text"].encode()) == bottle
 
 
-@pytest.mark.parametrize("row", rows("bottle"), ids=lambda row: row["printed"][:40])
+@for_each(rows("bottle"))
 def test_printed_form_reads_back(row):
     again = Bottle.from_text(row["printed"])
     assert again.to_text() == row["printed"]

@@ -5,6 +5,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from support.message import bottles, walk
+from support.table import for_each
 from support.vectors import binaries, rows
 
 from yarpy.data.walker import Walker
@@ -15,7 +16,7 @@ def packed(*words):
     return struct.pack(f"<{len(words)}i", *words)
 
 
-@pytest.mark.parametrize("message", binaries(), ids=lambda message: message[:24].hex())
+@for_each(binaries())
 def test_finds_the_end(message):
     for step in (1, 3, 7, len(message)):
         assert walk(message, step) == len(message)
@@ -25,7 +26,7 @@ def test_finds_the_end(message):
     assert walker.advance(message + b"next message") == len(message)
 
 
-@pytest.mark.parametrize("message", binaries(), ids=lambda message: message[:24].hex())
+@for_each(binaries())
 def test_never_asks_for_bytes_of_the_next_message(message):
     walker = Walker()
     have = 0

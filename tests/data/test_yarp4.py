@@ -9,6 +9,7 @@ import pytest
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 from support.message import bottles, kinds, walk
+from support.table import for_each
 from support.vectors import binaries
 
 from yarpy.data import codec
@@ -107,7 +108,7 @@ def test_there_and_back(value):
     assert walk(newer, 7, yarp4=True) == len(newer)
 
 
-@pytest.mark.parametrize("message", binaries(), ids=lambda message: message[:24].hex())
+@for_each(binaries())
 def test_no_message_of_3_is_taken_for_one_of_4(message):
     assert is_yarp4(message) in (None, False)
     assert to_yarp3(bytes(to_yarp4(message))) == message

@@ -4,11 +4,10 @@ from __future__ import annotations
 
 import os
 import re
-import subprocess
-import sys
 from pathlib import Path
 
 import pytest
+from life.property import Run
 
 HERE = Path(__file__).parent
 SEEDS = [
@@ -21,13 +20,9 @@ SEEDS = [
 @pytest.mark.skipif(not hasattr(os, "fork"), reason="these programs fork")
 @pytest.mark.parametrize("seed", SEEDS)
 def test_a_program_that_failed_once(seed: int) -> None:
-    done = subprocess.run(
-        [sys.executable, str(HERE / "property.py"), "300", "--only", str(seed)],
-        capture_output=True,
-        text=True,
-        timeout=300,
-    )
-    assert done.returncode == 0, done.stdout + done.stderr
+    run = Run(300, seed)
+    run.batch(seed, 1)
+    assert (run.programs, run.failed) == (1, {})
 
 
 def test_they_stay_few() -> None:

@@ -1,6 +1,7 @@
 """A node of ROS 2 by an independent implementation, as a program of its own; and the router.
 
-    python ros2_peer.py PORT hear TOPIC            prints what is published, as JSON
+    python ros2_peer.py PORT hear TOPIC            prints what is published, as JSON;
+                                                   say=TOPIC publishes lines beside it
     python ros2_peer.py PORT say TOPIC             publishes the lines of its input
     python ros2_peer.py PORT serve NAME            adds two numbers for whoever asks
     python ros2_peer.py PORT call NAME             asks for the sums of the lines of its input
@@ -129,8 +130,10 @@ def main(port: int, verb: str, name: str, options: dict[str, str]) -> None:
     kind = options.get("type", "std_msgs/msg/String")
     if verb == "hear":
         node = sdk.ROS2Subscriber(name, kind, lambda message: _say(message.data), **topic)
+        also = sdk.ROS2Publisher(options["say"], kind, **topic) if "say" in options else None
         _say("ready")
-        sys.stdin.read()
+        for line in sys.stdin:
+            also.publish(data=line.rstrip("\n"))  # type: ignore[union-attr]
         node.close()
     elif verb == "say":
         publisher = sdk.ROS2Publisher(name, kind, **topic)

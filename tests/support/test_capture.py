@@ -5,9 +5,9 @@ from __future__ import annotations
 import ast
 from pathlib import Path
 
-import pytest
 from support.capture import CAPTURES, groups, load_capture
 from support.difference import DIFFERENT, LIVE_DIFFERENT, NOT_REPLAYED
+from support.table import for_each
 
 TESTS = Path(__file__).parents[1]
 REPLAYS = [
@@ -47,10 +47,9 @@ def words(path: Path) -> set[str]:
 SPELLED = set().union(*(words(path) for path in REPLAYS))
 
 
-@pytest.mark.parametrize(
-    ("group", "name"), [(group, name) for group, names in groups().items() for name in names]
-)
-def test_capture_is_replayed_or_excused(group: str, name: str) -> None:
+@for_each([(group, name) for group, names in groups().items() for name in names])
+def test_capture_is_replayed_or_excused(capture: tuple[str, str]) -> None:
+    group, name = capture
     assert (CAPTURES / f"{name}.json").exists()
     assert load_capture(name).name == name
     if name in NOT_REPLAYED:

@@ -5,6 +5,7 @@ from typing import Any
 import numpy as np
 import pytest
 from numpy.typing import NDArray
+from support.table import for_each
 
 from yarpy.data import codec
 from yarpy.data.bottle import Bottle
@@ -123,8 +124,7 @@ SHAPES = [
 ]
 
 
-@pytest.mark.parametrize("shape", SHAPES, ids=str)
-@pytest.mark.parametrize("dtype", DTYPES)
+@for_each(DTYPES, SHAPES)
 def test_every_type_and_shape_comes_back(dtype: str, shape: tuple[int, ...]) -> None:
     count = int(np.prod(shape))
     values = (np.arange(count) * 7 % 5).astype(dtype).reshape(shape)

@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
+from support.table import for_each
 from support.vectors import rows
 
 from yarpy.data.bottle import Bottle
@@ -47,9 +48,7 @@ def test_golden(row):
         assert size < caught.value.need <= len(message)
 
 
-@pytest.mark.parametrize("name", NAMES)
-@pytest.mark.parametrize("quantum", [0, 1, 4, 8, 16])
-@pytest.mark.parametrize("top_down", [True, False])
+@for_each(NAMES, [0, 1, 4, 8, 16], [True, False])
 def test_every_code_and_padding(name, quantum, top_down):
     array = picture(name)
     image = Image(array, name, quantum, top_down=top_down)

@@ -2,6 +2,7 @@
 
 import math
 import threading
+from contextlib import ExitStack, contextmanager
 
 import numpy as np
 import pytest
@@ -19,6 +20,28 @@ from yarpy.errors import (
 from yarpy.kits.devices.control_board.client import ControlBoard
 from yarpy.kits.devices.control_board.interface import ControlBoardLike, ControlMode, Gains
 from yarpy.kits.devices.control_board.server import ControlBoardServer
+from yarpy.nameserver.local import LocalNames
+
+
+@contextmanager
+def clients_of(device, kind, names=None):
+    """Give a client of the device; one of a server of a client of it ("relayed"); or one that finds
+    the functions of YARP 4 only, and is taken for a program of it ("newer")."""
+    names = names or LocalNames()
+    with ExitStack() as stack:
+        stack.enter_context(ControlBoardServer("/head", device, 0.005, names=names))
+        if kind == "newer":
+            patch = stack.enter_context(pytest.MonkeyPatch.context())
+            patch.setattr("yarpy.port.port.MessagePort._is_yarp4", lambda port, target: True)
+            names.unregister("/head/rpc:i")
+        client = stack.enter_context(ControlBoard("/head", timeout=HANG, names=names))
+        if kind == "relayed":
+            stack.enter_context(ControlBoardServer("/relay", client, 0.005, names=names))
+            client = stack.enter_context(ControlBoard("/relay", timeout=HANG, names=names))
+        yield client
+
+
+KINDS = ("head", "relayed", "newer")
 
 
 @pytest.fixture
@@ -29,36 +52,22 @@ def device():
 @pytest.fixture
 def head(device, names):
     """A client of the device."""
-    with (
-        ControlBoardServer("/head", device, 0.005, names=names),
-        ControlBoard("/head", timeout=HANG, names=names) as head,
-    ):
+    with clients_of(device, "head", names) as head:
         yield head
 
 
-@pytest.fixture
-def relayed(head, names):
-    """A client of a server of a client of the device."""
-    with (
-        ControlBoardServer("/relay", head, 0.005, names=names),
-        ControlBoard("/relay", timeout=HANG, names=names) as relayed,
-    ):
-        yield relayed
+@pytest.fixture(params=KINDS)
+def board(device, request):
+    with clients_of(device, request.param) as board:
+        yield board
 
 
-@pytest.fixture
-def newer(device, names, monkeypatch):
-    """A client that finds the functions of YARP 4 only, and is taken for a program of it."""
-    monkeypatch.setattr("yarpy.port.port.MessagePort._is_yarp4", lambda port, target: True)
-    with ControlBoardServer("/newer", device, 0.005, names=names):
-        names.unregister("/newer/rpc:i")
-        with ControlBoard("/newer", timeout=HANG, names=names) as newer:
-            yield newer
-
-
-@pytest.fixture(params=["head", "relayed", "newer"])
-def board(request):
-    return request.getfixturevalue(request.param)
+@pytest.fixture(scope="module", params=KINDS)
+def lasting(request):
+    """A device and its client, for tests of one call each."""
+    device = FakeBoard(3)
+    with clients_of(device, request.param) as board:
+        yield device, board
 
 
 def test_five_lines(device, head):
@@ -105,7 +114,6 @@ COMMANDS = [
     (("position_move", range(3), (1, 2, 3)), ("position_move", [0, 1, 2], [1.0, 2.0, 3.0])),
     (("position_move", np.arange(3), np.ones(3)), ("position_move", [0, 1, 2], [1.0] * 3)),
     (("position_move", np.int64(1), np.float32(2)), ("position_move", [1], [2.0])),
-    (("relative_move", 1, -2.0), ("position_move", [1], [-2.0])),
     (("position_direct", 0, 5.0), ("position_direct", [0], [5.0])),
     (("position_direct", [0, 1], [5.0, 6.0]), ("position_direct", [0, 1], [5.0, 6.0])),
     (("velocity_move", range(3), 5.0), ("velocity_move", [0, 1, 2], [5.0, 5.0, 5.0])),
@@ -134,11 +142,19 @@ COMMANDS = [
 
 
 @pytest.mark.parametrize(("call", "heard"), COMMANDS, ids=lambda value: value[0])
-def test_commands(device, board, call, heard):
+def test_commands(lasting, call, heard):
+    device, board = lasting
+    device.done.clear()
     method, *arguments = call
     getattr(board, method)(*arguments)
     wait_until(lambda: device.done, HANG, f"{call} arrived")
     assert device.done == [heard]
+
+
+def test_relative_move(device, board):
+    board.relative_move(1, -2.0)
+    wait_until(lambda: device.done)
+    assert device.done == [("position_move", [1], [-2.0])]
 
 
 def test_targets(device, board):
@@ -172,7 +188,8 @@ ADJUSTED = {
 
 
 @pytest.mark.parametrize("member", ADJUSTED)
-def test_adjusting(device, board, member):
+def test_adjusting(lasting, member):
+    device, board = lasting
     values = ADJUSTED[member]
     assert getattr(board, member) != values
     setattr(board, member, [*values])

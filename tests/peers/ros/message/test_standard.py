@@ -2,7 +2,7 @@
 
 from pathlib import Path
 
-import pytest
+from support.table import for_each
 
 from yarpy.peers.ros.message.catalogue import Catalogue
 from yarpy.peers.ros.message.source import Packages, Rosbags, Standard
@@ -11,17 +11,17 @@ OWN = Catalogue([Standard()])
 DEBIAN = Packages((), [Path("/usr/share")])
 
 
-@pytest.mark.parametrize("name", Standard.messages)
+@for_each(Standard.messages)
 def test_each_stands_alone(name: str) -> None:
     assert OWN.message(name).name == name
 
 
-@pytest.mark.parametrize("name", Standard.services)
+@for_each(Standard.services)
 def test_so_do_services(name: str) -> None:
     assert OWN.service(name).name == name
 
 
-@pytest.mark.parametrize("name", Standard.messages)
+@for_each(Standard.messages)
 def test_each_is_that_of_ros(name: str) -> None:
     """Where a package or rosbags has it, too; the sum of its definition says so."""
     for theirs in (DEBIAN, Rosbags()):
@@ -30,7 +30,7 @@ def test_each_is_that_of_ros(name: str) -> None:
             assert OWN.message(name).md5sum == expected, theirs
 
 
-@pytest.mark.parametrize("name", Standard.services)
+@for_each(Standard.services)
 def test_so_is_each_service(name: str) -> None:
     if DEBIAN.find(name, "srv") is not None:
         assert OWN.service(name).md5sum == Catalogue([DEBIAN]).service(name).md5sum

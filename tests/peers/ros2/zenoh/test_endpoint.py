@@ -380,20 +380,20 @@ def test_the_quality_of_service_of_an_independent_node(
         reader = stack.enter_context(yarpy.BufferedPort("/in", strict=True))
         if order == "yarpy first":
             join()
-        hears = stack.enter_context(Peer(router, tmp_path, "hear", up, f"qos={QOS[qos]}"))
-        says = stack.enter_context(Peer(router, tmp_path, "say", down, f"qos={QOS[qos]}"))
-        hears.ready(), says.ready()
+        words = ("hear", up, f"say={down}", f"qos={QOS[qos]}")
+        peer = stack.enter_context(Peer(router, tmp_path, *words))
+        peer.ready()
         wait_until(lambda: part.graph.endpoints(up, "MS") and part.graph.endpoints(down, "MP"))
         if order == "yarpy last":
             join()
-        says.write_line("hello from there")
+        peer.write_line("hello from there")
         assert reader.read(timeout=HANG).value == "hello from there"
         for number in range(200):
             out.write(f"hello {number}")
             with contextlib.suppress(AssertionError):
-                wait_until(lambda: len(hears.said) > 1, 0.05)
+                wait_until(lambda: len(peer.said) > 1, 0.05)
                 break
-        assert str(hears.said[1]).startswith("hello")
+        assert str(peer.said[1]).startswith("hello")
         (listening,) = part.graph.endpoints(down, "MS")
         assert listening.qos.latched is ("transient" in qos)
 
