@@ -231,7 +231,8 @@ else:
             return import_module(_ROOMS[name])
         if name not in _WHERE:
             place = path.join(__path__[0], name)
-            if path.exists(f"{place}.py") or path.exists(place):  # `from yarpy import` a part asks
+            # What begins so is asked by programs, such as inspect; a part, by `from yarpy import`.
+            if name.startswith("__") or path.exists(f"{place}.py") or path.exists(place):
                 raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
             packages = import_module("yarpy.shipped").PACKAGES
             if name in packages:
