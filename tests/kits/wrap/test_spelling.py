@@ -156,11 +156,11 @@ def test_failures_are_told_as_yarp_does() -> None:
     said = failure(Failure("ValueError", "too far"))
     assert said.to_text() == '[fail] "ValueError: too far" (raised ValueError)'
     message = Message(DATA, said.to_bytes())
-    assert failure_of(message) == Failure("ValueError", "too far")
+    assert failure_of(message.value) == Failure("ValueError", "too far")
     other = Message(DATA, yarpy.Bottle([yarpy.Vocab("fail"), "no such motor: 7"]).to_bytes())
-    assert failure_of(other) == Failure("", "no such motor: 7")
+    assert failure_of(other.value) == Failure("", "no such motor: 7")
     for value in (["fail", "x"], [yarpy.Vocab("fail")], [yarpy.Vocab("ok"), 1], "fail"):
-        assert failure_of(Message(DATA, b"".join(Packet(value).blocks))) is None
+        assert failure_of(Message(DATA, b"".join(Packet(value).blocks)).value) is None
 
 
 def test_a_picture_is_compressed_once_for_all_middlewares(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -4,7 +4,7 @@ import pytest
 from support.ros_link import LIBRARY, Int32, Stamped, String
 
 from yarpy.data.bottle import Bottle
-from yarpy.peers.ros.body import RosMessage, encode_body, envelope_of, has_header, message_of
+from yarpy.peers.ros.body import RosMessage, encode_body, envelope_of, message_of
 from yarpy.wire.message import DATA, Encoded, Packet
 
 UInt8s = LIBRARY.message("std_msgs/UInt8MultiArray")
@@ -36,7 +36,7 @@ def test_a_blob_is_a_body_but_where_the_type_has_bytes() -> None:
 
 
 def test_headers_are_found() -> None:
-    assert has_header(Stamped) and not has_header(String)
+    assert Stamped._has_header and not String._has_header
     assert envelope_of(b"\1\0\0\0") == ""  # cut off; reading it says so
     assert envelope_of(b"\xff" * 12) == ""  # no time
 

@@ -133,6 +133,7 @@ class Method:
         self.parameters: dict[str, Shape] = {}
         self.result: Shape = ANY
         self.results: list[Shape] | None = None  # of a tuple with so many elements
+        self._exact: tuple[type | None, ...] = ()  # of arguments in order that go as they are
         self._read = False
         self.read_hints(late=True)
 
@@ -154,6 +155,8 @@ class Method:
         hint = hints.get("return", Any)
         if self.kind.endswith("generator") and hint is not Any:
             hint = (*get_args(hint), Any)[0]
+        if self._in_order is not None:
+            self._exact = tuple(self.parameters[name].exact for name in self._in_order)
         self.result = self._shape(hint, "what it returns")
         if get_origin(hint) is tuple and Ellipsis not in get_args(hint):
             self.results = [self._shape(one, "what it returns") for one in get_args(hint)]
@@ -243,13 +246,12 @@ class Method:
         self, instance: Any, args: Sequence[Any], kwargs: Mapping[str, Any]
     ) -> tuple[list[Any], dict[str, Any]]:
         """Arguments as plain Python. Raises TypeError for those that do not fit the signature."""
+        if args and not kwargs and tuple(map(type, args)) == self._exact[instance is not None :]:
+            return list(args), {}
 
         def plain(name: str, value: Any) -> Any:
-            shape = self.parameters[name]
-            if type(value) is shape.exact:
-                return value
             try:
-                return shape.dump(value)
+                return self.parameters[name].dump(value)
             except TypeError as error:
                 raise TypeError(f'{self.qualname}: the argument "{name}": {error}') from error
 
@@ -259,13 +261,12 @@ class Method:
         self, instance: Any, args: Sequence[Any], kwargs: Mapping[str, Any]
     ) -> tuple[list[Any], dict[str, Any]]:
         """The arguments of a question. Raises TypeError, DecodeError."""
+        if args and not kwargs and tuple(map(type, args)) == self._exact[instance is not None :]:
+            return list(args), {}
 
         def loaded(name: str, value: Any) -> Any:
-            shape = self.parameters[name]
-            if type(value) is shape.exact:
-                return value
             try:
-                return shape.load(value)
+                return self.parameters[name].load(value)
             except DecodeError as error:
                 raise DecodeError(f'the argument "{name}" of {self.qualname}: {error}') from error
 

@@ -89,6 +89,7 @@ class Way:
 
 
 _PLAIN: Final = Way("")
+_TEXT: Final = frozenset((str,))
 
 
 class Item:
@@ -227,7 +228,7 @@ def question_of(value: Any) -> tuple[list[Any], dict[str, Any]]:
         or len(value) != 2
         or not isinstance(value[0], (list, tuple))
         or not isinstance(value[1], dict)
-        or not all(isinstance(key, str) for key in value[1])
+        or not _TEXT.issuperset(map(type, value[1]))
     ):
         raise DecodeError("a question is [arguments, arguments by name]")
     return list(value[0]), value[1]

@@ -20,6 +20,7 @@ from __future__ import annotations
 import asyncio
 import inspect
 import threading
+import weakref
 from collections.abc import AsyncIterator, Callable, Iterator, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from typing import Any, ClassVar
@@ -329,7 +330,8 @@ class Serve(Mode):
     def __init__(self, method: Method, instance: Any, outputs: Sequence[Output]) -> None:
         super().__init__(method, instance, outputs)
         method.read_hints()
-        self._instance = instance if inspect.isclass(instance) else _weak(instance)
+        self._instance = instance if inspect.isclass(instance) else None
+        self._reference = None if instance is self._instance else _weak(instance)
         try:
             self._loop: asyncio.AbstractEventLoop | None = asyncio.get_running_loop()
         except RuntimeError:
@@ -346,14 +348,19 @@ class Serve(Mode):
     def answer(self, args: list[Any], kwargs: dict[str, Any]) -> Item | Failure:
         """Return a client's answer for these arguments."""
         method = self.method
-        instance = self._instance if not isinstance(self._instance, _Weak) else self._instance()
+        reference = self._reference
+        instance = self._instance if reference is None else reference()
         try:
+            if instance is None and reference is not None:
+                raise PortClosed("the object whose method this is does not exist any more")
             given, named = method.load(instance, args, kwargs)
             first = () if instance is None else (instance,)
             value = method.func(*first, *given, **named)
             if method.kind == "coroutine":
                 value = self._waited(value)
-            return Item(method.result.dump(value), method.result, source=method.qualname)
+            shape = method.result
+            plain = value if type(value) is shape.exact else shape.dump(value)
+            return Item(plain, shape, source=method.qualname)
         except Exception as error:
             log.info("%s: %s: %s", method.qualname, type(error).__name__, error)
             return Failure.of(error)
@@ -375,27 +382,12 @@ class Serve(Mode):
             server.close()
 
 
-class _Weak:
+def _weak(instance: Any) -> Callable[[], Any]:
     """A reference that does not keep its object alive, where that is possible."""
-
-    def __init__(self, instance: Any) -> None:
-        import weakref
-
-        self._get: Callable[[], Any]
-        try:
-            self._get = weakref.ref(instance)
-        except TypeError:
-            self._get = lambda: instance
-
-    def __call__(self) -> Any:
-        found = self._get()
-        if found is None:
-            raise PortClosed("the object whose method this is does not exist any more")
-        return found
-
-
-def _weak(instance: Any) -> Any:
-    return None if instance is None else _Weak(instance)
+    try:
+        return weakref.ref(instance)
+    except TypeError:
+        return lambda: instance
 
 
 class Call(Mode):
@@ -413,7 +405,7 @@ class Call(Mode):
 
     def run(self, func: Function, args: tuple[Any, ...], kwargs: dict[str, Any]) -> Any:
         method = self.method
-        timeout = self.timeout(kwargs)
+        timeout = self.timeout(kwargs) if kwargs else method.timeout
         instance = args[0] if self.bound else None
         asked, named = method.dump(instance, args[self.bound :], kwargs)
         return self._client.call(method.name, asked, named, timeout)

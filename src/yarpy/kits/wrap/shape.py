@@ -45,7 +45,7 @@ class Shape:
     def native(self, plain: Any) -> Any:
         kind = type(plain)
         if kind in _SCALARS:
-            return _scalar(plain)
+            return Scalar.native(plain)
         if hasattr(kind, "to_wire") and not issubclass(kind, (list, dict)):
             return plain
         return NOT_NATIVE
@@ -86,18 +86,15 @@ class Scalar(Shape):
         except (TypeError, ValueError, OverflowError) as error:
             raise DecodeError(str(error)) from None
 
-    def native(self, plain: Any) -> Any:
-        return _scalar(plain)
+    @staticmethod
+    def native(plain: Any) -> Any:
+        """A number that takes more than 64 bits is not native."""
+        if type(plain) is int and not -_INT64 <= plain < _INT64:
+            return NOT_NATIVE
+        return plain
 
     def read(self, message: Message) -> Any:
         return message.as_(self.kind)
-
-
-def _scalar(plain: Any) -> Any:
-    """A number that takes more than 64 bits is not native."""
-    if type(plain) is int and not -_INT64 <= plain < _INT64:
-        return NOT_NATIVE
-    return plain
 
 
 class Nothing(Shape):

@@ -206,14 +206,13 @@ def failure(found: Failure) -> Bottle:
     return raised(found.type, found.text)
 
 
-def failure_of(message: Message) -> Failure | None:
+def failure_of(value: Any) -> Failure | None:
     """The failure that an answer tells of."""
-    value = message.value
+    if not isinstance(value, list) or len(value) < 2 or not isinstance(value[0], Vocab):
+        return None
     error = error_of(value)
     if error is not None:
         return Failure(error.type, error.text)
-    if not isinstance(value, list) or len(value) < 2 or not isinstance(value[0], Vocab):
-        return None
     if value[0] != "fail":
         return None
     kind, colon, text = str(value[1]).partition(": ")

@@ -36,6 +36,7 @@ Buffer: TypeAlias = bytes | bytearray | memoryview
 
 TAG: Final = "__wrapyfi__"
 PLAIN: Final = frozenset((str, int, float, bool, type(None)))
+_TEXT: Final = frozenset((str,))
 
 #: tags of Wrapyfi whose payload is an array as .npy, whatever library it came from
 _ARRAYS: Final = frozenset(
@@ -59,7 +60,10 @@ class Jpeg:
 
 
 class Planter:
-    """Makes trees. With `buffers` arrays and bytes go there, without they are text."""
+    """Makes trees. With `buffers` arrays and bytes go there, without they are text. What is of a
+    type in `plain` is its own tree."""
+
+    plain = PLAIN
 
     def __init__(self, buffers: list[NDArray[Any]] | None) -> None:
         self.buffers = buffers
@@ -67,22 +71,21 @@ class Planter:
     def plant(self, value: Any, depth: int = 0) -> Any:
         """Return the value for `json.dumps`. Raises TypeError, ValueError for what cannot be
         sent."""
-        kind = type(value)
-        if kind in PLAIN:
+        kind, plain = type(value), self.plain
+        if kind in plain:
             return value
         if depth > TREE_DEPTH:
             raise ValueError(f"a value that is nested more than {TREE_DEPTH} levels deep")
         below = depth + 1
-        if kind is list:
-            return [self.plant(item, below) for item in value]
+        if kind is list or isinstance(value, tuple):
+            tree = [one if type(one) in plain else self.plant(one, below) for one in value]
+            return tree if kind is list else {TAG: ["tuple", tree]}
         if isinstance(value, dict):
             return self._plant_dict(value, below)
-        if isinstance(value, tuple):
-            return tagged("tuple", [self.plant(item, below) for item in value])
         return self._plant_other(value, below)
 
     def _plant_dict(self, value: dict[Any, Any], below: int) -> Any:
-        plain = TAG not in value and all(type(key) is str for key in value)
+        plain = TAG not in value and _TEXT.issuperset(map(type, value))
         if self.buffers is None or plain:  # JSON makes strings of keys, as Wrapyfi has it
             return {key: self.plant(item, below) for key, item in value.items()}
         pairs = [[self.plant(k, below), self.plant(v, below)] for k, v in value.items()]
@@ -169,7 +172,7 @@ def from_text(text: str | bytes) -> Any:
     """The value of a JSON text with tags. Raises DecodeError."""
     check_json(text)
     try:
-        return json.loads(text, object_hook=Harvester().untag)
+        return json.loads(text, object_hook=untag)
     except DecodeError:
         raise
     except _WRONG as error:
@@ -184,12 +187,6 @@ def harvest(tree: Any, buffers: Sequence[NDArray[Any]]) -> Any:
         raise
     except _WRONG as error:
         raise DecodeError(f"a tree with tags that do not fit: {error}") from error
-
-
-def untag(found: dict[str, Any]) -> Any:
-    """A dict as the value that its tag stands for; itself if it has none. Raises DecodeError, and
-    what Python raises for a tag that does not fit."""
-    return Harvester().untag(found)
 
 
 class Harvester:
@@ -282,6 +279,9 @@ class Harvester:
         return self._buffers[index]
 
 
+#: a dict of a text as the value that its tag stands for: without buffers nothing is counted
+untag: Final = Harvester().untag
+
 _MAKERS: Final[dict[str, Callable[[Any], Any]]] = {
     "tuple": tuple,
     "set": set,
@@ -290,6 +290,7 @@ _MAKERS: Final[dict[str, Callable[[Any], Any]]] = {
     "dict": dict,
 }
 _HASHED: Final = frozenset(("set", "frozenset", "dict"))
+OWN: Final = frozenset(_MAKERS)  # tags that no library has to be asked about
 
 
 def _counted(value: Any) -> int:

@@ -7,8 +7,9 @@ there yet, and finds one again that was restarted.
 
 from __future__ import annotations
 
-import threading
 import time
+from collections import deque
+from contextlib import suppress
 from typing import Any
 
 from yarpy.errors import DecodeError, LinkClosed, UnknownName, YarpError
@@ -130,21 +131,23 @@ class PortServer:
         self._form = FORMS[way.encoding]
 
     def __call__(self, message: Message) -> Any:
-        found = self._answer(*self._arguments(message))
+        value = message.value
+        words = value if isinstance(value, list) else [value]
+        if words and words[0] == self._name:
+            found = self._answer(list(words[1:]), {})
+        else:
+            found = self._answer(*self._arguments(message))
         return failure(found) if isinstance(found, Failure) else self._form(found)
 
     def _arguments(self, message: Message) -> tuple[list[Any], dict[str, Any]]:
+        """Those of a frame, or of a text of Wrapyfi."""
         found = frame_of(message)
         if found is not None:
             return question_of(found.value)
         text = text_of(message)
         if text is not None and text.startswith("["):
             return question_of(from_text(text))
-        value = message.value
-        words = value if isinstance(value, list) else [value]
-        if not words or words[0] != self._name:
-            raise DecodeError(f'ask "{self._name}", and behind it the arguments')
-        return list(words[1:]), {}
+        raise DecodeError(f'ask "{self._name}", and behind it the arguments')
 
 
 class PortClient:
@@ -154,38 +157,35 @@ class PortClient:
         self._way = way
         self._shape = shape
         self._carrier = carrier
-        self._idle: list[RpcClient] = []
-        self._lock = threading.Lock()  # of the list of idle connections
+        self._idle: deque[RpcClient] = deque()  # whatever threads do, each of them is taken once
         self._closed = False
 
     def call(
         self, name: str, args: list[Any], kwargs: dict[str, Any], timeout: float | None
     ) -> Any:
         deadline = None if timeout is None else time.monotonic() + timeout
-        client = self._client(deadline)
+        try:
+            client = self._idle.pop()
+        except IndexError:
+            client = self._dialled(deadline)
         try:
             left = None if deadline is None else max(deadline - time.monotonic(), 0.0)
             message = client.ask(question(name, args, kwargs), left)
         except BaseException:
             client.close()
             raise
-        with self._lock:
-            if not self._closed:
-                self._idle.append(client)
+        self._idle.append(client)
         if self._closed:
-            client.close()
+            self.close()
         if message is None:
             raise LinkClosed(f'"{self._way.topic}" gave no answer')
-        failed = failure_of(message)
+        failed = failure_of(message.value)
         if failed is not None:
             raise failed.error()
         return answered(message, self._shape)
 
-    def _client(self, deadline: float | None) -> RpcClient:
+    def _dialled(self, deadline: float | None) -> RpcClient:
         """A connection to the server; with time left, one that is not there yet is waited for."""
-        with self._lock:
-            if self._idle:
-                return self._idle.pop()
         pause = 0.02
         while True:
             try:
@@ -197,8 +197,7 @@ class PortClient:
             pause = min(2 * pause, 0.5)
 
     def close(self) -> None:
-        with self._lock:
-            self._closed = True
-            idle, self._idle = self._idle, []
-        for client in idle:
-            client.close()
+        self._closed = True
+        with suppress(IndexError):
+            while True:
+                self._idle.pop().close()

@@ -126,7 +126,7 @@ class MqttClient:
             message = self._client.ask(question, left)
             if message is None:
                 raise LinkClosed(f'"{self._way.topic}" gave no answer')
-            refused = spelling.failure_of(message) if message.spelling == "binary" else None
+            refused = spelling.failure_of(message.value) if message.spelling == "binary" else None
             if refused is None:
                 break
             # By the broker: nobody has subscribed. As elsewhere, with a timeout that is waited for,

@@ -29,7 +29,6 @@ Kind: TypeAlias = "type[Ros] | None"
 
 #: what a message of one element is, where the element is one of these
 SCALARS: Final = (str, int, float)
-_HEADER: Final = "std_msgs/Header"
 _STAMP: Final = Struct("<III")
 _ENVELOPE: Final = re.compile(rb"\s*+([+-]?\d{1,10}+)\s++(\d{1,10}+)(?:\.(\d{1,9}+)\d*+)?+")
 
@@ -97,7 +96,7 @@ def _identity(kind: type[Ros]) -> tuple[str, str]:
 
 def message_of(key: str, body: Buffer, kind: Kind, raw: bool, headed: bool = False) -> Message:
     """Return the message for a body that was received. Without a type it is in YARP's format.
-    `raw`: always make a blob of it; `headed`: it begins with number and time (see `has_header`)."""
+    `raw`: always make a blob of it; `headed`: `kind._has_header`."""
     if kind is not None:
         return RosMessage(key, body, kind, envelope_of(body) if headed else "")
     return Message(key, b"".join(codec.encode([bytes(body)])) if raw else body)
@@ -153,12 +152,6 @@ def _takes_blob(kind: type[Ros]) -> bool:
     return len(fields) == 1 and str(fields[0].type).startswith("uint8[")
 
 
-def has_header(kind: type[Ros]) -> bool:
-    """Return whether messages of the type begin with number and time."""
-    fields = kind._definition.struct.fields
-    return bool(fields) and getattr(fields[0].type, "name", "") == _HEADER
-
-
 def envelope_of(body: Buffer) -> str:
     """Number and time of a message with a header, as an envelope."""
     if len(body) < _STAMP.size:
@@ -181,7 +174,7 @@ def _stamped(
     blocks: Blocks, kind: type[Ros], envelope: bytes, now: Callable[[], float] | None
 ) -> Blocks:
     """The message with number and time of its envelope, else with the time that it is."""
-    if not has_header(kind):
+    if not kind._has_header:
         return blocks
     count, seconds, nanoseconds = _STAMP.unpack_from(blocks[0])
     said = said_by(envelope)

@@ -18,7 +18,7 @@ from yarpy.carriers.base import Carrier, Delivery
 from yarpy.errors import AccessRefused, RemoteProtocolError, YarpError
 from yarpy.facts import SERVER
 from yarpy.log import logger, readable
-from yarpy.peers.ros.body import Kind, encode_body, has_header, message_of
+from yarpy.peers.ros.body import Kind, encode_body, message_of
 from yarpy.peers.ros.greeting import (
     ANY,
     answer_header,
@@ -85,7 +85,7 @@ class TcpRos(Carrier):
             self.kind = None
         elif self.kind is None:
             self.kind = message_kind(fields)
-        self._headed = self.kind is not None and has_header(self.kind)
+        self._headed = self.kind is not None and self.kind._has_header
 
     def parse(self, stream: ByteStream) -> Message | None:
         head = stream.head

@@ -33,7 +33,6 @@ from yarpy.link.send.outbound import Outbound
 from yarpy.names.base import NameClient
 from yarpy.names.node_name import PUBLISHER, SERVER, SUBSCRIBER, Category, NodeName
 from yarpy.peers.ros.arguments import expand, parse_arguments
-from yarpy.peers.ros.body import has_header
 from yarpy.peers.ros.carrier import TcpRos
 from yarpy.peers.ros.graph import GRAPH, GraphNode, join
 from yarpy.peers.ros.graph_name import master_type
@@ -77,7 +76,7 @@ class Publisher(MessagePort):
         self.type = kind
         self._member = member
         self._count = 0
-        self._headed = has_header(kind)
+        self._headed = kind._has_header
         super().__init__(node._open(member, Callback(lambda message: None)))
 
     def write(

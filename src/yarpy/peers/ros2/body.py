@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Any, Final
 
 from yarpy.data import codec
 from yarpy.data.value import Buffer
-from yarpy.peers.ros.body import RosMessage, has_header, said_by
+from yarpy.peers.ros.body import RosMessage, said_by
 from yarpy.wire.message import UNSENDABLE, Encoded, Packet
 
 if TYPE_CHECKING:
@@ -67,7 +67,7 @@ def _stamped(
     blocks: tuple[Buffer, ...], kind: type[Ros], envelope: bytes, now: Callable[[], float] | None
 ) -> tuple[Buffer, ...]:
     """The message with the time of its envelope, else, where it has none, with the time it is."""
-    if not has_header(kind):
+    if not kind._has_header:
         return blocks
     said = said_by(envelope)
     first = bytearray(blocks[0])

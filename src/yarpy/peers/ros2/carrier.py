@@ -25,7 +25,6 @@ from yarpy.data.text import plain_text
 from yarpy.data.value import Vocab
 from yarpy.errors import DecodeError
 from yarpy.log import logger
-from yarpy.peers.ros.body import has_header
 from yarpy.peers.ros2.body import encode_body, message_of, time_of, value_of
 from yarpy.peers.ros2.qos import WORDS
 from yarpy.route import Route
@@ -168,7 +167,7 @@ class Subscriber(Ros2):
         topic = self.topic
         assert topic is not None
         kind = topic.kind
-        return message_of(DATA, came.body, kind, has_header(kind), came.number, came.time)
+        return message_of(DATA, came.body, kind, kind._has_header, came.number, came.time)
 
 
 class Asker(Ros2):

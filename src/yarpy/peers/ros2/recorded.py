@@ -10,7 +10,6 @@ from typing import Any, TypeAlias
 
 from yarpy.errors import DecodeError
 from yarpy.limit import ROS_FULL_TEXT
-from yarpy.peers.ros.body import has_header
 from yarpy.peers.ros.message.native import to_native
 from yarpy.peers.ros2.body import message_of
 from yarpy.peers.ros2.message.action import plain_name
@@ -34,7 +33,7 @@ def reader(name: str, language: str, text: str) -> Read:
         kind = Library(library.sources).message_of(plain, text)
     else:
         kind = library.message(plain)
-    headed = has_header(kind)
+    headed = kind._has_header
 
     def read(data: bytes) -> tuple[Any, Any, str]:
         message = message_of("", data, kind, headed, 0, 0)

@@ -150,7 +150,8 @@ class Record:
 
     def call(self, args: tuple[Any, ...], kwargs: dict[str, Any]) -> Any:
         """Do what the decorated function does."""
-        self._take_defaults()
+        if self.wrapper.__defaults__ is not self.func.__defaults__:  # type: ignore[attr-defined]
+            self._take_defaults()
         instance = self.find(args[0]) if args and self.instances else None
         if instance is None or instance.mode is None:
             return self.func(*args, **kwargs)
@@ -158,9 +159,8 @@ class Record:
 
     def _take_defaults(self) -> None:
         """Programs change topics by assigning `method.__defaults__`."""
-        if self.wrapper.__defaults__ is not self.func.__defaults__:  # type: ignore[attr-defined]
-            self.func.__defaults__ = self.wrapper.__defaults__  # type: ignore[attr-defined]
-            self.signature = inspect.signature(self.func)
+        self.func.__defaults__ = self.wrapper.__defaults__  # type: ignore[attr-defined]
+        self.signature = inspect.signature(self.func)
 
     def _disable(self, instance: Instance, args: Any, kwargs: Any) -> Any:
         return [None] * len(self.outputs)

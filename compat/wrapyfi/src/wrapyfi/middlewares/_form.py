@@ -32,17 +32,14 @@ class Native:
         }
 
     @cached_property
-    def _encode(self) -> Callable[[Any], str]:
+    def text(self) -> Callable[[Any], str]:
+        """What makes the JSON of a value. Raises TypeError for what it cannot hold."""
         return JsonEncoder(**self._plugins, **self._encoder).encode
 
     @cached_property
     def _decode(self) -> Callable[[str], Any]:
         hook = JsonDecodeHook(**self._plugins).object_hook
         return json.JSONDecoder(object_hook=hook, **self._decoder).decode
-
-    def text(self, value: Any) -> str:
-        """The JSON of a value. Raises TypeError for what it cannot hold."""
-        return self._encode(value)
 
     def of_text(self, text: str | bytes) -> Any:
         """The value of a text. Raises ValueError."""

@@ -154,6 +154,7 @@ class _Taking(Listener):
         self._in: Any = None
 
     def establish(self, repeats: int = -1, **kwargs: Any) -> bool:
+        self._patience = patience() if self.should_wait else 0.0
         into = self._in
         if into is None:
             into = self._in = self.medium.into(self)
@@ -168,7 +169,7 @@ class _Taking(Listener):
             return self.form.nothing
         while True:
             try:
-                came = self._in.receive(patience() if self.should_wait else 0.0)
+                came = self._in.receive(self._patience)
             except yarpy.Timeout:
                 if self.should_wait:
                     raise
@@ -266,6 +267,7 @@ class _Asking(Client):
         self._client: Any = None
 
     def establish(self, *args: Any, **kwargs: Any) -> bool:
+        self._patience = patience()
         if self._client is None:
             assert self.medium.asking is not None
             self._client = self.medium.asking(self)
@@ -278,7 +280,7 @@ class _Asking(Client):
         client = self._client
         if not (client.wait(0.0) or _awaited(client, lambda: self._client is client)):
             raise yarpy.Timeout(f'nobody serves "{self.in_topic}"')
-        return self.form.value(client.ask(spelled, patience()))
+        return self.form.value(client.ask(spelled, self._patience))
 
     def close(self) -> None:
         if self._client is not None:

@@ -164,7 +164,7 @@ class _Asking(_Watch):
 
     def ask(self, spelled: Any, timeout: float | None) -> Any:
         message = self._port.ask(self._service.question(spelled), timeout)
-        failed = None if message is None else failure_of(message)
+        failed = None if message is None else failure_of(message.value)
         if failed is not None:
             raise failed.error()
         response = getattr(message, "ros", None)

@@ -241,10 +241,11 @@ class _Asking:
 
     def ask(self, spelled: Any, timeout: float | None) -> yarpy.Message:
         message = self._port.ask(spelled, timeout)
-        failed = None if message is None else failure_of(message)
+        value = None if message is None else message.value
+        failed = failure_of(value)
         if failed is not None:
             raise failed.error()
-        if message is None or message.value in ([], ""):
+        if message is None or value in ([], ""):
             raise yarpy.LinkClosed(f'"{self._topic}" failed, and gave no answer')
         return message
 

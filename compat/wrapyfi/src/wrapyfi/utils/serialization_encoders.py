@@ -11,9 +11,7 @@ from typing import Any
 from wrapyfi.utils._shipped import for_tag, for_type
 from wrapyfi.utils._tensors import gathered, planted
 from wrapyfi.utils.core_utils import PluginRegistrar
-from yarpy.kits.wrap.tree import PLAIN, TAG, Planter, untag
-
-_BUILT_IN = frozenset((*PLAIN, list, tuple, dict, set))
+from yarpy.kits.wrap.tree import OWN, PLAIN, TAG, Planter, untag
 
 
 class JsonEncoder(json.JSONEncoder):
@@ -22,40 +20,51 @@ class JsonEncoder(json.JSONEncoder):
     def __init__(self, **kwargs: Any) -> None:
         known = ("skipkeys", "ensure_ascii", "check_circular", "allow_nan", "sort_keys", "indent")
         known += ("separators", "default")
-        self._options = {name: kwargs.pop(name) for name in [*kwargs] if name not in known}
+        options = {name: kwargs.pop(name) for name in [*kwargs] if name not in known}
         super().__init__(**kwargs)
+        self._usual, self._plugged = _Planter(options), _Plugged(options)
 
     def encode(self, o: Any) -> str:
         return "".join(self.iterencode(o, True))
 
     def iterencode(self, o: Any, _one_shot: bool = False) -> Any:
-        return super().iterencode(_Planter(self._options).plant(o), _one_shot)
+        planter = self._plugged if PluginRegistrar.encoder_registry else self._usual
+        return super().iterencode(planter.plant(o), _one_shot)
 
 
 class _Planter(Planter):
+    """Knows the libraries that Wrapyfi has plug-ins for."""
+
     def __init__(self, options: dict[str, Any]) -> None:
         super().__init__(None)
         self._options = options
 
+    def _plant_other(self, value: Any, below: int) -> Any:
+        found = self._by(for_type(type(value)), value)
+        if found is None and hasattr(value, "shape"):
+            tag = planted(value)
+            found = None if tag is None else {TAG: tag}
+        return super()._plant_other(value, below) if found is None else found
+
+    def _by(self, plugin: Any, value: Any) -> Any:
+        """The tree that a plug-in makes of a value; None for none."""
+        done, tree = (False, None) if plugin is None else plugin(**self._options).encode(value)
+        if not done:
+            return None
+        tag = tree[TAG]
+        return {TAG: [tag[0], *(Planter.plant(self, one) for one in tag[1:])]}
+
+
+class _Plugged(_Planter):
+    """Asks the plug-ins of users first, about every value."""
+
+    plain = frozenset()
+
     def plant(self, value: Any, depth: int = 0) -> Any:
-        kind = type(value)
-        plugin = None
-        if PluginRegistrar.encoder_registry:
-            plugin = PluginRegistrar.nearest(kind)
-        elif kind in PLAIN:
+        found = self._by(PluginRegistrar.nearest(type(value)), value)
+        if found is None and type(value) in PLAIN:
             return value
-        if plugin is None and kind not in _BUILT_IN:
-            plugin = for_type(kind)
-        if plugin is not None:
-            done, tree = plugin(**self._options).encode(value)
-            if done:
-                tag = tree[TAG]
-                return {TAG: [tag[0], *(super(_Planter, self).plant(one) for one in tag[1:])]}
-        if kind not in PLAIN and hasattr(value, "shape"):
-            found = planted(value)
-            if found is not None:
-                return {TAG: found}
-        return super().plant(value, depth)
+        return super().plant(value, depth) if found is None else found
 
 
 class JsonDecodeHook:
@@ -69,7 +78,8 @@ class JsonDecodeHook:
         content = obj.get(TAG) if isinstance(obj, dict) else None
         if content is None:
             return obj
-        if isinstance(content, list) and content:
+        own = type(content) is list and content and type(content[0]) is str and content[0] in OWN
+        if isinstance(content, list) and content and not own:
             plugin = PluginRegistrar.decoder_registry.get(str(content[0])) or for_tag(content[0])
             if plugin is not None:
                 done, found = plugin(**self._options).decode(content[0], content)

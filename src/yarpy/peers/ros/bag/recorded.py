@@ -9,7 +9,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import Any, TypeAlias
 
-from yarpy.peers.ros.body import envelope_of, has_header
+from yarpy.peers.ros.body import envelope_of
 from yarpy.peers.ros.message.library import default_library
 from yarpy.peers.ros.message.native import to_native
 from yarpy.peers.ros.message.parse import peer_type_name
@@ -29,7 +29,7 @@ def reader(name: str, language: str, text: str) -> Read:
     library = default_library()
     spoken = language == "ros1msg" and bool(text.strip())
     kind = library.message_of(known, text) if spoken else library.message(known)
-    headed = has_header(kind)
+    headed = kind._has_header
 
     def read(data: bytes) -> tuple[Any, Any, str]:
         found = kind.from_ros(data)

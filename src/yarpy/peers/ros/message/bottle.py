@@ -118,12 +118,11 @@ def _message(cls: type[Any], items: Any, path: str) -> Any:
     if len(items) != len(fields):
         names = " ".join(field.name for field in fields)
         raise DecodeError(f"{path}: expected {len(fields)} elements ({names}), got {len(items)}")
-    return cls(
-        *(
-            _value(cls, field.type, item, f"{path}.{field.name}")
-            for field, item in zip(fields, items, strict=True)
-        )
-    )
+    values = [
+        _value(cls, field.type, item, f"{path}.{field.name}")
+        for field, item in zip(fields, items, strict=True)
+    ]
+    return cls(*values)
 
 
 def _value(cls: type[Message], kind: Type, item: Any, path: str) -> Any:

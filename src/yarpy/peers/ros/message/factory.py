@@ -50,6 +50,7 @@ def make(
         "_definition": definition,
         "_names": names,
         "_used": dict(used),
+        "_has_header": _begins_with_header(struct),
         "_restore": staticmethod(restore),
         "to_bottle": to_bottle,
         "from_bottle": classmethod(from_bottle),
@@ -67,6 +68,11 @@ def make(
     }.items():
         setattr(made, attr, _Late(made, attr, make_it))
     return made
+
+
+def _begins_with_header(struct: Struct) -> bool:
+    first = struct.fields[0].type if struct.fields else None
+    return isinstance(first, Struct) and first.name == "std_msgs/Header"
 
 
 class _Late:

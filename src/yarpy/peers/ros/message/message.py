@@ -76,6 +76,8 @@ class Message:
     _names: ClassVar[tuple[str, ...]]
     #: the classes of all messages in it, and the functions that read and write one in a row
     _used: ClassVar[dict[Struct, type[Message]]]
+    #: whether it begins with number and time
+    _has_header: ClassVar[bool] = False
     _read: ClassVar[Callable[..., Any]]
     _write: ClassVar[Callable[..., Any]]
     #: makes a message of its type, full text and bytes, wherever it is unpickled

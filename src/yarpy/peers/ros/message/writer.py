@@ -60,7 +60,7 @@ def joined(pieces: list[bytes | memoryview]) -> Blocks:
             small.clear()
         else:
             small.append(piece)
-    return tuple(block for block in blocks if block)
+    return tuple(filter(None, blocks))
 
 
 class Writer:

@@ -259,6 +259,7 @@ class Subscriber(Endpoint):
         self._numbers: dict[bytes, int] = {}  # the last of each publisher
         self._repeats = False  # whether what was kept may come once more
         self._refused = ""
+        self._kept = 0  # messages that wait to be read
         self._past = Coalesced(self._catch_up, f"yarpy past of {self.name}")
 
     def extra(self, kind: Any) -> str:
@@ -269,6 +270,7 @@ class Subscriber(Endpoint):
 
         hear = Callback(self._heard, indirect=False)
         session = self.participant.session
+        self._kept = self.qos.kept
         if self.qos.latched:
             from zenoh import ext
 
@@ -328,7 +330,7 @@ class Subscriber(Endpoint):
             if len(self._numbers) >= MOST_PUBLISHERS and sender not in self._numbers:
                 del self._numbers[next(iter(self._numbers))]  # one that flaps has many names
             self._numbers[sender] = number
-        self.put(Incoming(bytes(sample.payload), number, when), self.qos.kept)
+        self.put(Incoming(bytes(sample.payload), number, when), self._kept)
 
 
 class Client(Endpoint):
