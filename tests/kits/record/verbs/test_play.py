@@ -45,6 +45,7 @@ def test_what_is_used_wrongly(here, names, tmp_path) -> None:
         assert said.code == 1 and "--prefix /replay" in said.err
     assert "does not rename a port" in here("play", path, "--rename", "x").err
     assert '"/x" was not recorded' in here("play", path, "--ports", "/x").err
+    assert '"/x" was not recorded' in here("play", path, "--rename", "/x=/y").err
     assert "a rate of 0" in here("play", path, "-r", "0").err
     assert "cannot be read" in here("play", str(tmp_path / "gone")).err
 

@@ -94,7 +94,7 @@ class Player:
         self.dropped = 0
         self.latest = 0.0  # seconds that a message was late, at most
         self._facts = recording.ports
-        self._chosen = _chosen(self._facts, ports)
+        self._chosen = _chosen(self._facts, ports, rename or ())
         with ExitStack() as stack:
             stack.callback(self._close_ports)
             for name in self._chosen:
@@ -377,11 +377,14 @@ def _checked(rate: float) -> float:
     return rate
 
 
-def _chosen(known: Mapping[str, PortFacts], ports: Collection[str] | None) -> list[str]:
+def _chosen(
+    known: Mapping[str, PortFacts], ports: Collection[str] | None, renamed: Collection[str]
+) -> list[str]:
     chosen = [name for name in known if known[name].playable] if ports is None else list(ports)
-    for name in chosen:
+    for name in (*chosen, *renamed):
         if name not in known:
             raise UnknownName(f'"{name}" was not recorded: there are {" ".join(known)}')
+    for name in chosen:
         if not known[name].playable:
             raise LocalProtocolError(f'"{name}" is {known[name].kinds[0]}, not of YARP')
     if not chosen:
