@@ -334,10 +334,9 @@ def test_nothing_but_snapshots(tmp_path, names, out) -> None:
 
 def test_a_message_that_is_waited_for(tmp_path, names, out) -> None:
     told: list[str] = []
-    with Recorder(
-        "/out", path=tmp_path / "x", names=names, snapshot=60, triggers={"/out": "fall"},
-        tell=told.append,
-    ) as recorder:  # fmt: skip
+    with Recorder(  # the port of a trigger need not be named again
+        path=tmp_path / "x", names=names, snapshot=60, triggers={"/out": "fall"}, tell=told.append
+    ) as recorder:
         assert out.wait_for_outputs(timeout=HANG)
         for word in ("stands", "stands", "falls"):
             out.write([word])

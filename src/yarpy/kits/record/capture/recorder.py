@@ -61,7 +61,7 @@ class Recorder:
     rates: the largest number of messages a second, by patterns of names: `{"/cam/*": 10}`.
     newest: patterns of ports of which older messages make way for newer ones where memory is full.
     snapshot: write nothing but the last so many seconds, when `snapshot` is called; `memory` bounds
-    them, too. triggers: regular expressions by ports: a message with a match calls it.
+    them, too. triggers: regular expressions by ports, which are recorded, too: a match calls it.
     paused: take nothing before `resume`, with which the recording begins.
     attach: files that are kept within each MCAP file: the application, definitions of types.
     carrier: how the ports are connected, else as `yarpy.connect` does.
@@ -97,7 +97,8 @@ class Recorder:
         room: DiskSpace | None = None,
         now: Callable[[], int] = time.time_ns,
     ) -> None:
-        wanted = PortSelection(tuple(ports), every, pattern, exclude)
+        named = tuple(dict.fromkeys((*ports, *(triggers or ()))))
+        wanted = PortSelection(named, every, pattern, exclude)
         self._now = now
         self.memory = memory  # bytes of messages, at most
         self._ring = None
@@ -355,8 +356,7 @@ class Recorder:
             self._output.leave()
             batch.again()
             self._notes.add("file gone", file=str(gone))
-            path = self._output.path
-            self._tell(f"{gone} was taken away with what was in it: the rest goes into {path}")
+            self._tell(f"{gone} was taken away with all in it: the rest is in {self._output.path}")
         now = time.time_ns() - time.monotonic_ns()
         if abs(now - step) > CLOCK_STEP:
             self._notes.add("clock set", seconds=(now - step) / SECOND)
