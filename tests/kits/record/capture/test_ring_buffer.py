@@ -40,10 +40,14 @@ def test_no_more_than_the_memory() -> None:
 
 
 def test_a_clock_that_is_set_back() -> None:
-    ring = RingBuffer(10, 1000, {})
-    ring.add(taken(100))
-    ring.add(taken(0))
-    assert [one.received_ns for one in ring.drain(START)[0]] == [START]
+    """What came before is as old as it was."""
+    ring = RingBuffer(10, 10_000, {})
+    for second in (95, 100, 0, 4, 8):
+        ring.add(taken(second))
+    ring.note({"n": 8}, START + 8 * SECOND)
+    messages, notes = ring.drain(START + 9 * SECOND)
+    seconds = [(one.received_ns - START) // SECOND for one in messages]
+    assert (seconds, len(notes)) == ([100, 0, 4, 8], 1)
 
 
 def test_a_trigger_fires_once_for_what_lasts() -> None:

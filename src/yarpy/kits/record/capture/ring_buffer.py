@@ -32,8 +32,10 @@ class RingBuffer:
     def __init__(self, seconds: float, memory: int, triggers: Mapping[str, str]) -> None:
         self._keep = round(seconds * SECOND)
         self._memory = memory
-        self._messages: deque[QueuedMessage] = deque()
-        self._notes: deque[tuple[Mapping[str, Any], int]] = deque(maxlen=_NOTES)
+        self._messages: deque[tuple[int, QueuedMessage]] = deque()  # with when they came
+        self._last = 0  # when the newest one came; nanoseconds of a clock that is never set back
+        self._shift = 0  # from the clock of the recorder to that one
+        self._notes: deque[tuple[Mapping[str, Any], int, int]] = deque(maxlen=_NOTES)
         self._triggers: dict[str, re.Pattern[str]] = {}
         for port, text in triggers.items():
             pattern = compiled(text)
@@ -45,17 +47,17 @@ class RingBuffer:
 
     def add(self, queued: QueuedMessage) -> bool:
         """Keep a message; return whether it is one that was waited for."""
-        self._messages.append(queued)
+        self._shift = max(self._shift, self._last - queued.received_ns)
+        self._last = queued.received_ns + self._shift
+        self._messages.append((self._last, queued))
         self.held += queued.size
-        self._forget(queued.received_ns)
+        self._forget(self._last)
         return queued.port in self._triggers and self._fires(queued)
 
     def _forget(self, now: int) -> None:
         messages = self._messages
-        while messages and (
-            self.held > self._memory or not 0 <= now - messages[0].received_ns <= self._keep
-        ):
-            self.held -= messages.popleft().size
+        while messages and (self.held > self._memory or now - messages[0][0] > self._keep):
+            self.held -= messages.popleft()[1].size
 
     def _fires(self, queued: QueuedMessage) -> bool:
         if len(queued.payload) > LONGEST:
@@ -73,16 +75,16 @@ class RingBuffer:
 
     def note(self, what: Mapping[str, Any], received: int) -> None:
         """Keep a note."""
-        self._notes.append((what, received))
+        self._notes.append((what, received, received + self._shift))
 
     def drain(
         self, now: int
     ) -> tuple[Sequence[QueuedMessage], Sequence[tuple[Mapping[str, Any], int]]]:
         """Return the messages and notes of the last seconds, which go."""
+        now = max(self._last, now + self._shift)
         self._forget(now)
-        first = now - self._keep
-        messages = [*self._messages]
-        notes = [(what, moment) for what, moment in self._notes if moment >= first]
+        messages = [queued for _, queued in self._messages]
+        notes = [(what, at) for what, at, came in self._notes if came >= now - self._keep]
         self._messages.clear()
         self._notes.clear()
         self.held = 0
