@@ -11,7 +11,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from support.cpp import CppYarp
-from support.cpp_device import between, cpp_device, device_host
+from support.cpp_device import PATIENT, between, cpp_device, device_host
 from support.wait import wait_until
 
 from yarpy import Bottle, RpcClient, Sound
@@ -19,6 +19,8 @@ from yarpy.errors import LocalProtocolError
 from yarpy.kits import devices
 
 pytestmark = pytest.mark.peer("g++")
+
+EYE, ARM = devices.Description("eye", "camera"), devices.Description("arm", "board")
 
 
 @pytest.fixture
@@ -205,3 +207,31 @@ def test_frames_of_ours(newer: CppYarp) -> None:
         wait_until(lambda: "hand" in str(client.call("list_frames")))
         client.call("delete_static_transform", "head", "base")
         wait_until(lambda: len(server.frames.all()) == 1)
+
+
+def test_descriptions_of_cpp(newer: CppYarp) -> None:
+    with (
+        cpp_device(newer, "robotDescriptionServer", local="/cpp"),
+        devices.Descriptions.connect("/cpp/rpc") as client,
+    ):
+        assert client.devices() == []
+        client.register(EYE)
+        client.register(ARM)
+        assert client.devices() == [EYE, ARM] and client.devices_of("board") == [ARM]
+        client.unregister("eye")
+        assert client.devices() == [ARM]
+        with pytest.raises(LocalProtocolError, match='"/cpp/rpc" refuses unregister'):
+            client.unregister("eye")
+
+
+def test_descriptions_of_ours(newer: CppYarp) -> None:
+    device = devices.DescriptionStorage()
+    device.register(EYE)
+    device.register(ARM)
+    options = {"inner": "robotDescriptionClient", "local": "/between", "remote": "/ours"}
+    with (
+        devices.Descriptions.serve("/ours/rpc", device),
+        cpp_device(newer, PATIENT, **options) as process,
+    ):
+        assert "not available" not in process.stdout, process.stdout + process.stderr
+        assert device.devices() == [EYE, devices.Description("eye_twin", "camera")]

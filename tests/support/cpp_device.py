@@ -67,6 +67,7 @@ _ATTACHED = (
 )
 
 #: A device of our own in C++: the one that `inner` names, given on once it has heard of its server.
+#: (A client of descriptions gives the only camera a twin then, and removes the arm.)
 PATIENT = "patient"
 
 _SOURCE = """
@@ -75,6 +76,7 @@ _SOURCE = """
 #include <yarp/dev/IAnalogSensor.h>
 #include <yarp/dev/IJoypadController.h>
 #include <yarp/dev/IMultipleWrapper.h>
+#include <yarp/dev/IRobotDescription.h>
 #include <yarp/dev/PolyDriver.h>
 #include <yarp/dev/PolyDriverList.h>
 #include <yarp/os/Network.h>
@@ -85,6 +87,14 @@ class Patient : public yarp::dev::DeviceDriver {
     bool hasHeard() {
         yarp::dev::IAnalogSensor* sensor = nullptr;
         if (driver.view(sensor)) return sensor->getChannels() > 0;
+        yarp::dev::IRobotDescription* robot = nullptr;
+        std::vector<yarp::dev::DeviceDescription> found;
+        if (driver.view(robot)) {
+            if (!robot->getAllDevicesByType("camera", found) || found.size() != 1) return false;
+            found[0].device_name += "_twin";
+            return robot->registerDevice(found[0]) && robot->getAllDevices(found)
+                && found.size() == 3 && robot->unregisterDevice("arm");
+        }
         yarp::dev::IJoypadController* pad = nullptr;
         double axis;
         return driver.view(pad) && pad->getAxis(0, axis);

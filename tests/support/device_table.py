@@ -129,6 +129,7 @@ OLDER: Final = {
     "audioPlayerWrapper": "AudioPlayerWrapper",
     "battery_nws_yarp": "batteryWrapper",
     "joypadControl_nws_yarp": "JoypadControlServer",
+    "robotDescription_nws_yarp": "robotDescriptionServer",
 }
 
 #: Interfaces that another one has in itself.

@@ -6,10 +6,12 @@ from yarpy.data.bottle import Bottle
 from yarpy.errors import DecodeError
 from yarpy.kits.devices.interfaces.depth import DepthCamera
 from yarpy.kits.devices.interfaces.joypad import Joypad, Point
+from yarpy.kits.devices.interfaces.world import Description, Descriptions
 from yarpy.kits.devices.network import words
 from yarpy.kits.devices.network.model import Member
 
-DEPTH, PAD = DepthCamera.members, Joypad.members
+DEPTH, PAD, ROBOT = DepthCamera.members, Joypad.members, Descriptions.members
+EYE, ARM = Description("eye", "camera"), Description("arm", "board")
 
 
 @pytest.mark.parametrize(
@@ -19,6 +21,11 @@ DEPTH, PAD = DepthCamera.members, Joypad.members
         (PAD["button"], "ok", (2,), "[ijpc] [get] [butn] [val] 2", (0.5,), "[ok] 0.5"),
         (PAD["trackball"], "ok", (0,), "[ijpc] [get] [trbl] [val] 0", (Point(1.0, 2.0),),
          "[ok] 1.0 2.0"),
+        (ROBOT["devices"], "list", (), "[irob] [get] [all]", ([EYE, ARM],),
+         "[ok] (eye camera arm board)"),
+        (ROBOT["devices_of"], "list", ("x",), "[irob] [get] [type] x", ([],), "[ok] ()"),
+        (ROBOT["register"], "list", (EYE,), "[irob] [set] [dev] eye camera", (), "[ok]"),
+        (ROBOT["unregister"], "list", ("eye",), "[irob] [del] [dev] eye", (), "[ok]"),
         (DEPTH["depth_width"], "is", (), "[visd] [get] [w]", (320,), "[visd] [w] [is] 320"),
         (DEPTH["mirror_depth"], "is", (True,), "[visd] [set] [mirr] 1", (), "[visd] [set] 1"),
         (DEPTH["push"], "is", (3,), "[fgc] [set] [onep] 3", (), "[nak]"),
@@ -32,7 +39,7 @@ def test_both_ways(
 ) -> None:  # fmt: skip
     request = words.question(each, values)
     assert request == Bottle.from_text(request_)
-    members = [*(PAD if form == "ok" else DEPTH).values()]
+    members = [*{"ok": PAD, "is": DEPTH, "list": ROBOT}[form].values()]
     assert words.asked(members, request) is each
     assert words.arguments(each, request) == values
     found = words.answer(each, form, results)

@@ -1,9 +1,11 @@
 """World: the objects of a simulator. Descriptions: the devices of a robot.
 
-Source: ISimulatedWorld of YARP 3.12.3 and 4.0, IRobotDescription of 3.12 and 4.0.
+Source: ISimulatedWorld of YARP 3.12.3 and 4.0, IRobotDescription of 3.9, 3.12 and 4.0.
 """
 
 from __future__ import annotations
+
+from typing import ClassVar
 
 from yarpy.kits.devices.network.model import Interface, call
 from yarpy.kits.thrift.kind import Nested, i16
@@ -30,7 +32,9 @@ class Colour(Struct):
 
 
 class Description(Struct):
-    """A device: its name, its type, how it was opened, and more."""
+    """A device: its name, its type, how it was opened, and more. YARP 3.9 knows the first two."""
+
+    SPOKEN: ClassVar[int] = 2
 
     device_name: str = ""
     device_type: str = ""
@@ -171,22 +175,23 @@ class Descriptions(Interface):
     FAKE = "robotDescriptionStorage"
     VIEW = "IRobotDescription"
     RPC = ""
+    WORDS = "list"
 
-    @call("getAllDevicesRPC", cpp="getAllDevices")
+    @call("getAllDevicesRPC", cpp="getAllDevices", words="irob get all")
     def devices(self) -> list[Description]:
         """Return all."""
         raise NotImplementedError
 
-    @call("getAllDevicesByTypeRPC", cpp="getAllDevicesByType")
+    @call("getAllDevicesByTypeRPC", cpp="getAllDevicesByType", words="irob get type")
     def devices_of(self, type: str) -> list[Description]:
         """Return those of a type."""
         raise NotImplementedError
 
-    @call("registerDeviceRPC", cpp="registerDevice")
+    @call("registerDeviceRPC", cpp="registerDevice", words="irob set dev")
     def register(self, device: Nested[Description]) -> None:
         """Add one."""
 
-    @call("unregisterDeviceRPC", cpp="unregisterDevice")
+    @call("unregisterDeviceRPC", cpp="unregisterDevice", words="irob del dev")
     def unregister(self, name: str) -> None:
         """Remove one."""
 

@@ -5,12 +5,14 @@
                     [fgc] [has] [feat] 3          [fgc] [has] [feat] 1952540006 1
                     [fgc] [set] [feat] 3 0.5      [nak]
     WORDS = "ok"    [ijpc] [get] [butn] [val] 2   [ok] 0.5
+    WORDS = "list"  [irob] [get] [all]            [ok] (eye frameGrabber arm controlBoard)
 
 Rules: pure functions of lists. The second word is the verb: `get`, `set` or `has`. What fails is
-`[fail]`, or `[visd] [set] 0`. A struct is its fields; a list of structs is how many there are, then
-all fields; a table of properties is one list. Results that are not sent have their defaults.
+`[fail]`, or `[visd] [set] 0`. A struct is its fields, the first `SPOKEN` if it says so; a list of
+structs is how many there are, then all fields (`list`: one list of all fields); a table of
+properties is one list. Results that are not sent have their defaults.
 
-Source: RGBDSensor_nws_yarp and JoypadControlServer of YARP 3.9.
+Source: RGBDSensor_nws_yarp, JoypadControlServer and RobotDescriptionServer of YARP 3.9.
 """
 
 from __future__ import annotations
@@ -66,6 +68,8 @@ def answer(each: Member, form: str, results: Sequence[Any] | None) -> Bottle:
     """Return what is answered; `results` is None where it failed."""
     verb = each.words[1]
     head = [Vocab(one) for one in each.words]
+    if form == "list":
+        return Bottle([FAIL] if results is None else [_OK, *(Bottle(_flat(e)) for e in results)])
     if form == "ok":
         return Bottle([FAIL] if results is None else [_OK, *_flat(results)])
     if verb == "set":
@@ -85,6 +89,8 @@ def results(each: Member, form: str, found: Sequence[Any]) -> tuple[Any, ...] | 
     first = word(found[0]) if found else ""
     if first == "fail":
         return None
+    if form == "list":
+        return tuple(_listed(one, found[at:]) for at, one in enumerate(each.results, 1))
     if form == "ok":
         begin = 1
     elif verb == "set":
@@ -102,7 +108,7 @@ def _flat(values: Iterable[Any]) -> list[Any]:
         if isinstance(each, bool):
             found.append(int(each))
         elif isinstance(each, Struct):
-            found += _flat(getattr(each, name) for name in type(each)._attributes)
+            found += _flat(getattr(each, name) for name in _spoken(type(each)))
         elif isinstance(each, Matrix):
             found += Bottle.from_bytes(b"".join(each.to_wire()))
         elif isinstance(each, dict):
@@ -112,6 +118,20 @@ def _flat(values: Iterable[Any]) -> list[Any]:
         else:
             found.append(each)
     return found
+
+
+def _spoken(struct: type[Struct]) -> tuple[str, ...]:
+    """The fields that programs of YARP 3 know."""
+    return struct._attributes[: getattr(struct, "SPOKEN", None)]
+
+
+def _listed(annotation: Any, found: Sequence[Any]) -> list[Any]:
+    """The structs whose fields are the first element, a list. DecodeError."""
+    if not found or not isinstance(found[0], list):
+        raise DecodeError(f"expected a list, got {[*found]!r:.40}")
+    [kind] = get_args(annotation)
+    elements = _Elements(found[0])
+    return [elements.take(kind) for _ in range(0, len(found[0]), len(_spoken(kind)))]
 
 
 class _Elements:
@@ -130,7 +150,7 @@ class _Elements:
             if may_miss and not self._elements:
                 return annotation()
             made = annotation()
-            for name in annotation._attributes:
+            for name in _spoken(annotation):
                 setattr(made, name, self._like(getattr(made, name)))
             return made
         if annotation is Matrix:
