@@ -12,7 +12,7 @@ from contextlib import contextmanager
 from pathlib import Path
 
 import pytest
-from support.peer import demand
+from support.peer import brings, demand
 from support.port import free_port
 from support.process import Process
 from support.ros import PYTHON
@@ -105,3 +105,27 @@ def ros_graph(home: Path) -> Iterator[RosGraph]:
         yield graph
     finally:
         graph.close()
+
+
+@pytest.fixture(scope="module")
+@brings("ros", "rosmaster")
+def graph_apart(tmp_path_factory: pytest.TempPathFactory) -> Iterator[RosGraph]:
+    """A graph for the tests of one file, of which the environment knows nothing; nor of a YARP
+    server."""
+    with (
+        ros_graph(tmp_path_factory.mktemp("ros")) as found,
+        pytest.MonkeyPatch.context() as patch,
+    ):
+        for name in ("YARPY_SERVER", "ROS_MASTER_URI"):
+            patch.delenv(name, raising=False)
+        patch.setenv("YARP_CONFIG_HOME", str(found.home))
+        patch.setenv("ROS_IP", "127.0.0.1")
+        yield found
+
+
+@pytest.fixture(scope="module")
+def graph(graph_apart: RosGraph) -> Iterator[RosGraph]:
+    """The same; this process finds it by ROS_MASTER_URI."""
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setenv("ROS_MASTER_URI", graph_apart.uri)
+        yield graph_apart

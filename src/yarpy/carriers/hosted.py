@@ -47,7 +47,8 @@ class Hosted(Carrier):
 
     def write_object(self, stream: ByteStream, item: object) -> None:
         """Have the endpoint send that."""
-        stream.output.append(item)  # type: ignore[arg-type]
+        assert isinstance(stream, ObjectStream)
+        stream.write_object(item)
 
     def read_object(self, stream: ByteStream) -> Steps[Any]:
         """Return the next object that the endpoint has received; the first is the endpoint

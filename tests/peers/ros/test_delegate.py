@@ -5,9 +5,8 @@ from pathlib import Path
 
 import pytest
 from support.listener import listening
-from support.peer import brings
 from support.port import free_port
-from support.ros_graph import RosGraph, ros_graph
+from support.ros_graph import RosGraph
 from support.wait import HANG, wait_until
 
 import yarpy
@@ -16,18 +15,8 @@ from yarpy.peers.ros.node import Node
 
 
 @pytest.fixture(scope="module")
-@brings("ros", "rosmaster")
-def graph(tmp_path_factory: pytest.TempPathFactory) -> Iterator[RosGraph]:
-    """A master, of which the environment knows nothing."""
-    with (
-        ros_graph(tmp_path_factory.mktemp("ros")) as found,
-        pytest.MonkeyPatch.context() as patch,
-    ):
-        for name in ("YARPY_SERVER", "ROS_MASTER_URI"):
-            patch.delenv(name, raising=False)
-        patch.setenv("YARP_CONFIG_HOME", str(found.home))
-        patch.setenv("ROS_IP", "127.0.0.1")
-        yield found
+def graph(graph_apart: RosGraph) -> RosGraph:
+    return graph_apart
 
 
 @pytest.fixture

@@ -3,14 +3,12 @@
 import doctest
 import socket
 import threading
-from collections.abc import Iterator
 from pathlib import Path
 from xmlrpc.server import SimpleXMLRPCServer
 
 import pytest
-from support.peer import brings
 from support.port import free_port
-from support.ros_graph import RosGraph, ros_graph
+from support.ros_graph import RosGraph
 
 from yarpy.errors import (
     AddressError,
@@ -24,10 +22,8 @@ from yarpy.peers.ros.master import RosMaster, Uri, advertised_host, parse_uri
 
 
 @pytest.fixture(scope="module")
-@brings("ros", "rosmaster")
-def graph(tmp_path_factory: pytest.TempPathFactory) -> Iterator[RosGraph]:
-    with ros_graph(tmp_path_factory.mktemp("ros")) as found:
-        yield found
+def graph(graph_apart: RosGraph) -> RosGraph:
+    return graph_apart
 
 
 def test_what_is_registered_is_found(graph: RosGraph) -> None:

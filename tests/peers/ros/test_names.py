@@ -1,10 +1,7 @@
 """The ROS master as a name service, alone and behind a YARP server."""
 
-from collections.abc import Iterator
-
 import pytest
-from support.peer import brings
-from support.ros_graph import RosGraph, ros_graph
+from support.ros_graph import RosGraph
 
 import yarpy
 from yarpy.errors import AddressError, LocalProtocolError, UnknownName
@@ -14,10 +11,8 @@ from yarpy.peers.ros.names import RosNames
 
 
 @pytest.fixture(scope="module")
-@brings("ros", "rosmaster")
-def graph(tmp_path_factory: pytest.TempPathFactory) -> Iterator[RosGraph]:
-    with ros_graph(tmp_path_factory.mktemp("ros")) as found:
-        yield found
+def graph(graph_apart: RosGraph) -> RosGraph:
+    return graph_apart
 
 
 def test_ports_find_each_other_by_a_master_alone(graph: RosGraph) -> None:

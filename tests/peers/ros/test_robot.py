@@ -4,8 +4,7 @@ from collections.abc import Iterator
 from math import degrees
 
 import pytest
-from support.peer import brings
-from support.ros_graph import RosGraph, ros_graph
+from support.ros_graph import RosGraph
 from support.wait import HANG, wait_until
 
 import yarpy
@@ -71,15 +70,8 @@ string status_message
 
 
 @pytest.fixture(scope="module")
-@brings("ros", "rosmaster")
-def graph(tmp_path_factory: pytest.TempPathFactory) -> Iterator[RosGraph]:
-    with (
-        ros_graph(tmp_path_factory.mktemp("ros")) as found,
-        pytest.MonkeyPatch.context() as patch,
-    ):
-        patch.setenv("ROS_IP", "127.0.0.1")
-        patch.setenv("YARP_CONFIG_HOME", str(found.home))
-        yield found
+def graph(graph_apart: RosGraph) -> RosGraph:
+    return graph_apart
 
 
 @pytest.fixture

@@ -13,9 +13,8 @@ from typing import Any
 
 import pytest
 from support import dds_robot
-from support.peer import brings
 from support.process import Process
-from support.ros_graph import RosGraph, ros_graph
+from support.ros_graph import RosGraph, graph, graph_apart  # noqa: F401 (fixtures)
 from support.wait import HANG, wait_until
 
 import yarpy
@@ -247,21 +246,10 @@ def test_a_robot_of_ros_2(names: LocalNames, monkeypatch: pytest.MonkeyPatch) ->
         wait_until(lambda: found.encoders() == pytest.approx([-30.0, 25.0]))
 
 
-@pytest.fixture(scope="module")
-@brings("ros", "rosmaster")
-def graph(tmp_path_factory: pytest.TempPathFactory) -> Iterator[RosGraph]:
-    """A master of ROS 1."""
-    with (
-        ros_graph(tmp_path_factory.mktemp("ros")) as found,
-        pytest.MonkeyPatch.context() as patch,
-    ):
-        patch.setenv("ROS_MASTER_URI", found.uri)
-        patch.setenv("ROS_IP", "127.0.0.1")
-        yield found
-
-
 def test_a_robot_of_ros_1(
-    graph: RosGraph, names: LocalNames, monkeypatch: pytest.MonkeyPatch
+    graph: RosGraph,  # noqa: F811 (the fixture)
+    names: LocalNames,
+    monkeypatch: pytest.MonkeyPatch,
 ) -> None:
     monkeypatch.setattr(topics, "FIRST", HANG)
     peer = graph.python(ROS_1)

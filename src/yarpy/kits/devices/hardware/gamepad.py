@@ -17,13 +17,13 @@ import selectors
 import sys
 import threading
 from contextlib import ExitStack
-from pathlib import Path
 from struct import Struct
 from typing import Final
 
 from yarpy.data.bottle import Property
 from yarpy.errors import UnknownPlugin
 from yarpy.kits.devices.closeable import Closeable
+from yarpy.kits.devices.hardware.device_file import open_device
 from yarpy.kits.devices.interfaces.joypad import JoypadState
 from yarpy.kits.devices.simulated.joypad import SimulatedJoypad
 from yarpy.log import logger
@@ -106,19 +106,15 @@ def gamepad(options: Property, *, names: NameClient | None = None) -> object:
 def _opened(path: str) -> int:
     if sys.platform == "win32":
         raise UnknownPlugin("gamepads are files of Linux; Windows has none")
-    try:
-        return os.open(path, os.O_RDONLY | os.O_NONBLOCK)
-    except FileNotFoundError as error:
-        there = " ".join(sorted(map(str, Path(path).parent.glob("js*"))))
-        raise FileNotFoundError(
-            f"there is no gamepad at {path}: "
-            + (f"--port takes one of {there}" if there else "plug one in, or pair it")
-        ) from error
-    except PermissionError as error:
-        raise PermissionError(
-            f"the gamepad at {path} is not for this user: sudo usermod -aG input $USER, and log in "
-            "anew"
-        ) from error
+    return open_device(
+        path,
+        os.O_RDONLY | os.O_NONBLOCK,
+        "gamepad",
+        others="js*",
+        option="--port",
+        absent="plug one in, or pair it",
+        group="input",
+    )
 
 
 def _put(values: list[float], number: int, value: float) -> None:

@@ -18,7 +18,6 @@ import time
 from collections.abc import Callable
 from contextlib import ExitStack
 from errno import EBUSY
-from pathlib import Path
 from struct import Struct
 from typing import Any, Final, NamedTuple
 
@@ -27,6 +26,7 @@ from yarpy.data.sig import jpeg
 from yarpy.data.sig.image import Image
 from yarpy.errors import Timeout, UnknownPlugin
 from yarpy.kits.devices.closeable import Closeable
+from yarpy.kits.devices.hardware.device_file import open_device
 from yarpy.names.base import NameClient
 from yarpy.transports.descriptor import has_input
 
@@ -213,16 +213,12 @@ def usb_camera(options: Property, *, names: NameClient | None = None) -> object:
 def _opened(path: str) -> int:
     if sys.platform == "win32":
         raise UnknownPlugin("usbCamera is for Linux: opencv_grabber opens cameras of Windows")
-    try:
-        return os.open(path, os.O_RDWR | os.O_NONBLOCK)
-    except FileNotFoundError as error:
-        there = " ".join(sorted(map(str, Path(path).parent.glob("video*"))))
-        raise FileNotFoundError(
-            f"there is no camera at {path}: "
-            + (f"--d takes one of {there}" if there else "plug one in")
-        ) from error
-    except PermissionError as error:
-        raise PermissionError(
-            f"the camera at {path} is not for this user: sudo usermod -aG video $USER, and log in "
-            "anew"
-        ) from error
+    return open_device(
+        path,
+        os.O_RDWR | os.O_NONBLOCK,
+        "camera",
+        others="video*",
+        option="--d",
+        absent="plug one in",
+        group="video",
+    )
