@@ -4,12 +4,13 @@ from __future__ import annotations
 
 import click
 import pytest
+from support.table import for_each
 
 from yarpy.cli.main import find_verb
 from yarpy.cli.verb_list import GROUPS, VERBS
 
 
-@pytest.mark.parametrize("verb", VERBS)
+@for_each(VERBS)
 def test_a_line_says_it(verb: str) -> None:
     about = VERBS[verb].about
     assert len(about) < 80 and not about.endswith(".") and about[0].islower()

@@ -10,6 +10,7 @@ from pathlib import Path
 from typing import Any
 
 import pytest
+from support.table import for_each
 from support.wait import HANG
 
 ROOT = Path(__file__).parents[2]
@@ -46,6 +47,7 @@ ALLOWED = {
     "yarpy.network.asking",
     "yarpy.network.connection",
     "yarpy.network.qos",
+    "yarpy.platform.folders",
     "yarpy.qos",
     "yarpy.registry",
 }
@@ -63,7 +65,7 @@ def run(code: str, environment: Mapping[str, str]) -> str:
     return done.stdout
 
 
-@pytest.mark.parametrize("path", FILES, ids=lambda path: path.stem)
+@for_each(FILES)
 def test_only_the_public_side_of_yarpy_is_used(path: Path) -> None:
     tree = ast.parse(path.read_text(encoding="utf-8"))
     assert ast.get_docstring(tree)

@@ -1,5 +1,6 @@
 import numpy as np
 import pytest
+from support.table import for_each
 
 from yarpy.data.sig.conversion import convert
 from yarpy.data.sig.image import Image
@@ -76,8 +77,7 @@ def test_values(source, before, target, after):
     assert image.array.dtype == pixel_of(target).dtype
 
 
-@pytest.mark.parametrize("source", GREY + COLOUR)
-@pytest.mark.parametrize("target", GREY + COLOUR)
+@for_each(GREY + COLOUR, GREY + COLOUR)
 def test_all_of_grey_and_colour(source, target):
     kind = pixel_of(source)
     shape = (3, 5) if kind.channels == 1 else (3, 5, kind.channels)

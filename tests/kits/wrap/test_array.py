@@ -7,6 +7,7 @@ from typing import Annotated, Any
 import numpy as np
 import pytest
 from numpy.typing import NDArray
+from support.table import for_each
 
 import yarpy
 from yarpy.kits.wrap.array import Image
@@ -26,9 +27,9 @@ def through(hint: Any, value: object) -> object:
     return shape.load(shape.read(message))
 
 
-@pytest.mark.parametrize("kind", ["f8", "f4", "i8", "i4", "i2", "i1", "u1", "u2", "f2", ">f8", "?"])
-@pytest.mark.parametrize(
-    "shape", [(3,), (4,), (2, 3), (2, 3, 3), (2, 3, 4), (2, 3, 1), (0,), (2, 2, 2, 2)]
+@for_each(
+    ["f8", "f4", "i8", "i4", "i2", "i1", "u1", "u2", "f2", ">f8", "?"],
+    [(3,), (4,), (2, 3), (2, 3, 3), (2, 3, 4), (2, 3, 1), (0,), (2, 2, 2, 2)],
 )
 def test_arrays_keep_type_and_shape(kind: str, shape: tuple[int, ...]) -> None:
     """Whatever is native comes back with both."""

@@ -1,5 +1,5 @@
-import pytest
 from support.board import Controllers, FakeBoard
+from support.table import for_each
 
 from yarpy.kits.devices.control_board import grammar
 from yarpy.kits.devices.control_board.grammar import (
@@ -15,11 +15,11 @@ from yarpy.kits.devices.control_board.interface import ControlBoardLike, PidCont
 from yarpy.kits.devices.control_board.newer import NewerMembers
 
 MEMBERS = {*vars(ControlBoardLike), *ControlBoardLike.__annotations__, "axis_names", "encoders"}
-ROWS = [(i.word, row) for i in INTERFACES.values() for row in (*i.get, *i.set)]
+ROWS = [row for i in INTERFACES.values() for row in (*i.get, *i.set)]
 
 
-@pytest.mark.parametrize(("word", "row"), ROWS, ids=lambda value: getattr(value, "member", value))
-def test_rows_name_members_of_the_interface(word: str, row: Row):
+@for_each(ROWS)
+def test_rows_name_members_of_the_interface(row: Row):
     assert row.member in MEMBERS
     assert row.words()
     assert all(len(text) <= 4 for text in row.words())
@@ -37,7 +37,7 @@ def test_rows_of_controllers():
 def test_every_member_can_be_reached():
     """But for times, which travel as envelopes, what is only streamed or measured, and what came
     with YARP 4 (`newer`)."""
-    reached = {row.member for _, row in ROWS} | {name for name, _ in CALIBRATOR.values()}
+    reached = {row.member for row in ROWS} | {name for name, _ in CALIBRATOR.values()}
     reached |= {*QUITTING.values(), "calibrate_joint", "calibration_done", "pids", "variables"}
     streamed = {"position_direct", "apply_currents", "apply_duty_cycles", "timestamps"}
     newer = {name for name in vars(NewerMembers) if not name.startswith("_")}
