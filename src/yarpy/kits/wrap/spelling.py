@@ -157,9 +157,6 @@ def received(message: Message, shape: Shape) -> Received:
 
 def answered(message: Message, shape: Shape) -> Any:
     """The value alone, of an answer that is no failure. Raises DecodeError."""
-    value = message.value
-    if type(value) is shape.exact:
-        return value
     found = frame_of(message)
     return _native(message, shape) if found is None else shape.load(found.value)
 

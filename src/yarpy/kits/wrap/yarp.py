@@ -156,6 +156,7 @@ class PortClient:
     def __init__(self, way: Way, shape: Shape, carrier: str) -> None:
         self._way = way
         self._shape = shape
+        self._exact = None if shape.exact is list else shape.exact  # failures are lists, too
         self._carrier = carrier
         self._idle: deque[RpcClient] = deque()  # whatever threads do, each of them is taken once
         self._closed = False
@@ -179,7 +180,10 @@ class PortClient:
             self.close()
         if message is None:
             raise LinkClosed(f'"{self._way.topic}" gave no answer')
-        failed = failure_of(message.value)
+        value = message.value
+        if type(value) is self._exact:
+            return value
+        failed = failure_of(value)
         if failed is not None:
             raise failed.error()
         return answered(message, self._shape)
