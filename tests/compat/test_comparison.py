@@ -46,6 +46,8 @@ def cpp(tmp_path_factory: pytest.TempPathFactory) -> CppYarp:
 
 @pytest.mark.parametrize("script", SCRIPTS, ids=lambda path: path.stem)
 def test_cpp_prints_it(script: Path, cpp: CppYarp) -> None:
+    if cpp.version != (3, 5):
+        pytest.skip("what is expected was recorded of 3.5, whose older names are among it")
     # Without a name server C++ numbers its ports from here on.
     environment = {**cpp.environment, "YARP_PORT_RANGE": str(free_block(200))}
     with Process([cpp.interpreter, RUNNER, script], env=environment) as process:

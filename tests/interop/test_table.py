@@ -153,12 +153,12 @@ def from_cpp(programs: CppYarp, program: str) -> Iterator[Ends]:
 
 
 @pytest.mark.parametrize(("carrier", "kind"), rows(TEXT_TO_CPP))
-def test_a_type_to_cpp(to_cpp: Ends, carrier: str, kind: str) -> None:
+def test_a_type_to_cpp(cpp: CppYarp, to_cpp: Ends, carrier: str, kind: str) -> None:
     peer = to_cpp.over(carrier)
     value, _, shown = TYPES[kind]
     peer.begin(f"read {kind}")
-    # C++ YARP before 3.6 has an older form of sounds.
-    assert to_cpp.port.write(value.to_bottle() if kind == "Sound" else value) == 1
+    older = kind == "Sound" and cpp.version < (3, 9)  # which has another form of sounds
+    assert to_cpp.port.write(value.to_bottle() if older else value) == 1
     assert peer.end() == shown
 
 
