@@ -1,6 +1,6 @@
-"""Recordings that strangers made: MCAP files, and the folders of C++.
+"""Recordings that strangers made: MCAP files, the folders of C++, data sets of LeRobot.
 
-Rules: a folder is one input, its three files with `CUT` between them. What is read is asked for all
+Rules: a folder is one input, its files with `CUT` between them. What is read is asked for all
 that `yarpy info`, `play` and `convert` ask for.
 """
 
@@ -15,7 +15,7 @@ from contextlib import suppress
 from pathlib import Path
 
 import numpy as np
-from support.recordings import START, STEP, payload_of
+from support.recordings import START, STEP, episode, payload_of
 
 import yarpy
 from yarpy import record
@@ -23,19 +23,22 @@ from yarpy.errors import YarpError
 from yarpy.kits.record.form.form import Form
 from yarpy.kits.record.form.spell import Spell
 from yarpy.kits.record.kind import kind_of
+from yarpy.kits.record.lerobot.dataset import Plan, export
+from yarpy.kits.record.lerobot.layout import INFO
 from yarpy.kits.record.mcap.pieces import COMPRESSIONS
 from yarpy.kits.record.mcap.writer import McapWriter
 from yarpy.kits.record.report import lines, report
 from yarpy.kits.record.view import foxglove
 
 CUT = b"\n--\n"
+_SET = (INFO, "meta/episodes/chunk-000/file-000.parquet", "data/chunk-000/file-000.parquet")
 GOLDEN = Path(__file__).parents[1] / "golden" / "datadumper"
 
 
 def _read(path: Path) -> None:
     with record.open(path) as found:
         lines(report(found, check=True))
-        for one in itertools.islice(found.between(list(found.ports), START), 1000):
+        for one in itertools.islice(found.between(list(found.ports), 0), 1000):
             with suppress(YarpError):
                 _ = one.value, one.stamp
 
@@ -124,6 +127,25 @@ def folders() -> tuple[bytes, ...]:
         names += [path.name for path in folder.glob("00000000.*")]
         found.append(CUT.join((folder / name).read_bytes() for name in names))
     return tuple(found)
+
+
+def read_set(data: bytes) -> None:
+    """Read a data set of LeRobot: what it says of itself, its episodes, its rows."""
+    with tempfile.TemporaryDirectory() as folder:
+        for name, part in zip(_SET, [*data.split(CUT), b"", b""], strict=False):
+            path = Path(folder, name)
+            path.parent.mkdir(parents=True, exist_ok=True)
+            path.write_bytes(part)
+        _read(Path(folder))
+
+
+def sets() -> tuple[bytes, ...]:
+    """Return one with two episodes."""
+    with tempfile.TemporaryDirectory() as name:
+        folder = Path(name)
+        paths = [episode(folder / f"{n}.mcap", n) for n in (3, 2)]
+        export(paths, folder / "set", Plan(["/arm"], ["/goal"], fps=10, task="Reach"))
+        return (CUT.join((folder / "set" / one).read_bytes() for one in _SET),)
 
 
 def read_page(data: bytes) -> None:

@@ -879,6 +879,12 @@ except ImportError:
     pass
 else:
     TARGETS["recording"] = Target(recording.read_mcap, recording.mcap_files())
+    try:
+        import pyarrow  # noqa: F401
+    except ImportError:
+        pass
+    else:
+        TARGETS["data set"] = Target(recording.read_set, recording.sets())
 TARGETS["dumper"] = Target(recording.read_folder, recording.folders())
 TARGETS["page"] = Target(recording.read_page, recording.pages())
 TARGETS["application xml"] = Target(launch.read_application, (launch.APPLICATION,))
