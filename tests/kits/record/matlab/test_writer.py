@@ -57,6 +57,27 @@ def test_what_is_no_numbers_is_left_out(tmp_path: Path) -> None:
             convert(found, tmp_path / "walk.mat", form="robometry")
 
 
+@pytest.mark.parametrize("code", ["mono", "rgb", "bgr", "rgba", "bgra"])
+def test_pictures_there_and_back(tmp_path: Path, code: str) -> None:
+    depth = len(code.replace("mono", "m"))
+    shape = (4, 6) if code == "mono" else (4, 6, depth)
+    pixels = np.arange(3 * 24 * depth, dtype="u1").reshape(3, *shape)
+    with McapWriter(tmp_path / "x.mcap") as writer:
+        for n, array in enumerate(pixels):
+            image = yarpy.Image(np.ascontiguousarray(array), code)
+            writer.add("/cam", f"{n} {10 + n}.5", START + n, payload_of(image))
+    with record.open(tmp_path / "x.mcap") as found:
+        expected = [one.as_(yarpy.Image) for one in found]
+        done = convert(found, tmp_path / "walk", form="robometry")
+    assert loadmat(done.path, simplify_cells=True)["walk"]["cam"]["data"].dtype == np.uint8
+    with record.open(done.path) as found:
+        assert found.ports["/cam"].kinds == ["yarp/image"] and found.damages == []
+        for one, was in zip(found, expected, strict=True):
+            picture = one.as_(yarpy.Image)
+            assert str(picture.code) == code.replace("bgr", "rgb")
+            assert (picture.array == was.converted(picture.code).array).all()
+
+
 def test_a_configuration_names_no_pixels(tmp_path: Path) -> None:
     with McapWriter(tmp_path / "x.mcap") as writer:
         image = yarpy.Image(np.zeros((240, 320, 3), "u1"))

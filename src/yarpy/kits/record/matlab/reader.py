@@ -2,8 +2,8 @@
 
 Rules: the library reads a whole file, which is refused if it would take too much memory. What it
 makes of a damaged one becomes a DecodeError. A sample is a Vector, or a Matrix where it has rows
-and columns, or a text; other cells and structures are left out, and told. Times are those of
-sending and of receipt.
+and columns, or a picture where these are bytes, or a text; other cells and structures are left out,
+and told. Times are those of sending and of receipt.
 """
 
 from __future__ import annotations
@@ -17,6 +17,7 @@ from typing import Any
 import numpy as np
 
 from yarpy.data import codec
+from yarpy.data.sig.image import Image
 from yarpy.data.sig.matrix import Matrix
 from yarpy.data.sig.vector import Vector
 from yarpy.errors import DecodeError, MissingFile, UnknownPlugin
@@ -154,8 +155,14 @@ class _Series:
         shape = [int(size) for size in np.atleast_1d(leaf["dimensions"])]
         if shape[-1] != len(self.times) or min(shape) < 0:
             raise ValueError(f"dimensions {shape} with {len(self.times)} timestamps")
-        self._data = np.moveaxis(numbers.reshape(shape).astype("f8"), -1, 0)
+        self._data = np.moveaxis(numbers.reshape(shape), -1, 0)
         self._flat = sum(size > 1 for size in shape[:-1]) < 2
+        pixels = len(shape) == 3 or (len(shape) == 4 and shape[2] in (3, 4))
+        self._picture = numbers.dtype == np.uint8 and pixels and not self._flat
+        if self._picture:
+            self.kind = "yarp/image"
+            return
+        self._data = self._data.astype("f8")
         if not self._flat and self._data.ndim != 3:
             raise ValueError(f"samples with {self._data.ndim - 1} dimensions")
         self.kind = "yarp/vector" if self._flat else "yarp/matrix"
@@ -166,7 +173,9 @@ class _Series:
             if not begin <= time < end:
                 continue
             item: Any = self._data[number]
-            if not isinstance(item, str):
+            if not isinstance(item, str) and self._picture:
+                item = Image(np.ascontiguousarray(item))
+            elif not isinstance(item, str):
                 item = Vector(item.ravel(order="F")) if self._flat else Matrix(item)
             payload = b"".join(map(bytes, codec.encode(item)))
             yield Recorded(port, time, time, stamp_text(number, time), payload)

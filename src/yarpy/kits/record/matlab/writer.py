@@ -2,7 +2,8 @@
 
 Rules: for one thread. Such a file has all numbers of a channel in one piece, so that it is written
 at the end, and they wait in memory. A channel has messages of one size; all others, and what is no
-numbers, are refused. Times are those of sending.
+numbers, are refused. Times are those of sending. Pictures of bytes are arrays of bytes: grey ones
+of rows and columns, others with red, green, blue, and alpha if they have it, behind these.
 """
 
 from __future__ import annotations
@@ -15,9 +16,12 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
+from yarpy.data.sig.image import Image
 from yarpy.errors import DecodeError, LocalProtocolError, UnknownPlugin
 from yarpy.kits.record.envelope import SECOND, fields_of
+from yarpy.kits.record.kind import kind_of
 from yarpy.kits.record.matlab.layout import (
     DESCRIPTION,
     ENDING,
@@ -32,12 +36,13 @@ from yarpy.kits.record.recorded import Recorded
 
 
 class _Channel:
-    """The samples of a port, all of one shape."""
+    """The samples of a port, all of one shape and kind."""
 
-    def __init__(self, shape: tuple[int, ...]) -> None:
+    def __init__(self, shape: tuple[int, ...], kind: np.dtype[Any]) -> None:
         self.shape = shape
+        self.kind = kind
         self.times: array[float] = array("d")
-        self.numbers: array[float] = array("d")
+        self.numbers = bytearray()
 
 
 class MatWriter:
@@ -69,17 +74,17 @@ class MatWriter:
         before."""
         recorded = Recorded(port, received, 0, envelope, payload)
         try:
-            found = np.asarray(recorded.as_(np.ndarray), "f8")
+            found = _numbers(recorded)
         except (DecodeError, TypeError, ValueError) as error:
             raise LocalProtocolError(f"{port}: no numbers: {error}") from None
         shape = found.shape if found.ndim > 1 else (found.size, 1)
         known = self._channels.get(port)
-        if not found.size or (known is not None and known.shape != shape):
+        if not found.size or (known and (known.shape, known.kind) != (shape, found.dtype)):
             raise LocalProtocolError(f"{port}: a message of another size")
         if known is None:
-            known = self._channels[port] = _Channel(shape)
+            known = self._channels[port] = _Channel(shape, found.dtype)
         known.times.append(fields_of(envelope, received, 0)[2] / SECOND)
-        known.numbers.extend(found.ravel(order="F"))
+        known.numbers += found.tobytes(order="F")
 
     def note(self, what: Mapping[str, Any], received: int) -> None:
         """Leave a note out."""
@@ -97,8 +102,9 @@ class MatWriter:
             measured = _fitting(units, port, size) or ["n.d."] * size
             if size > NAMED:
                 named, measured = [], []
+            numbers = np.frombuffer(channel.numbers, channel.kind)
             leaf = {
-                "data": np.array(channel.numbers).reshape(*channel.shape, count, order="F"),
+                "data": numbers.reshape(*channel.shape, count, order="F"),
                 "dimensions": np.array([*channel.shape, count], "u8"),
                 "elements_names": _cells(named),
                 "units_of_measure": _cells(measured),
@@ -124,6 +130,17 @@ class MatWriter:
             return json.loads(self._facts.get(name, "null"))
         except (ValueError, RecursionError):
             return None
+
+
+def _numbers(recorded: Recorded) -> NDArray[Any]:
+    """Return a message as numbers: float64, bytes of a picture. Raises DecodeError, TypeError,
+    ValueError."""
+    if kind_of(recorded.payload) == "yarp/image":
+        image = recorded.as_(Image)
+        if image.array.dtype == np.uint8:
+            swapped = {"bgr": "rgb", "bgra": "rgba"}.get(str(image.code))
+            return np.asarray(image.converted(swapped).array if swapped else image.array)
+    return np.asarray(recorded.as_(np.ndarray), "f8")
 
 
 def _cells(texts: list[str]) -> Any:
