@@ -1,6 +1,5 @@
 """Ports that commands open."""
 
-import os
 import signal
 import time
 
@@ -90,12 +89,12 @@ def test_ports_close_with_the_command(names):
 
 def test_a_signal_while_a_port_opens(names, monkeypatch):
     """It is heard when the port is open, and closes it."""
-    before = signal.getsignal(signal.SIGTERM), signal.getsignal(signal.SIGINT)
-    hangup = signal.getsignal(signal.SIGHUP)
+    known = [number for number in signal.Signals if number.name in signals._NAMES]
+    before = [signal.getsignal(number) for number in known]
     signals.watch()
 
     def slow(name, **options):
-        os.kill(os.getpid(), signal.SIGTERM)
+        signal.raise_signal(signal.SIGTERM)
         time.sleep(0.01)
         return yarpy.Port(name, **options)
 
@@ -103,8 +102,8 @@ def test_a_signal_while_a_port_opens(names, monkeypatch):
         with pytest.raises(signals.Interrupted), click.Context(click.Command("other")):
             open_port(slow, "/opening/i")
     finally:
-        for number, handler in zip(("TERM", "INT", "HUP"), (*before, hangup), strict=True):
-            signal.signal(getattr(signal, f"SIG{number}"), handler)
+        for number, handler in zip(known, before, strict=True):
+            signal.signal(number, handler)
     assert names.query("/opening/i") is None
 
 

@@ -12,11 +12,11 @@ import yarpy
 
 #: sends itself a signal when a module is imported for the first time, and by its end at the latest
 PROGRAM = """
-import os, signal, sys
+import signal, sys
 class Sender:
     def find_spec(self, name, path=None, target=None):
         if name == {module!r}:
-            os.kill(os.getpid(), {number})
+            signal.raise_signal({number})
 sys.meta_path.insert(0, Sender())
 from yarpy.cli.start import main
 sys.argv = ["yarpy", "version"]
@@ -34,13 +34,13 @@ def test_a_signal_while_it_is_loaded(module: str, number: signal.Signals) -> Non
 
 
 BETWEEN = """
-import os, signal, sys
+import signal, sys
 from yarpy.cli import main as frame, signals
 from yarpy.cli.start import main
 watch = signals.watch
 def watching():
     watch()
-    os.kill(os.getpid(), signal.SIGINT)
+    signal.raise_signal(signal.SIGINT)
     while True:
         pass
 signals.watch = watching

@@ -1,6 +1,7 @@
 """Connection files."""
 
 import pytest
+from support.system import NO_MARKS
 from support.wait import wait_until
 
 import yarpy
@@ -66,6 +67,7 @@ def test_what_is_wrong_is_said_before_anything_is_connected(file, text, complain
     assert complaint in said.err
 
 
+@pytest.mark.skipif(bool(NO_MARKS), reason=NO_MARKS)
 def test_connect(file, here, names):
     with (
         yarpy.Port("/wiring/in", names=names) as in_,

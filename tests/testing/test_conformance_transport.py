@@ -9,6 +9,7 @@ from pathlib import Path
 from typing import Any
 
 import pytest
+from support.system import NO_UNIX_SOCKETS
 
 from yarpy import registry
 from yarpy.testing import TransportConformance
@@ -16,6 +17,7 @@ from yarpy.transports.shared import arena, sysv
 from yarpy.transports.tcp import TcpTransport
 
 
+@pytest.mark.skipif(bool(NO_UNIX_SOCKETS), reason=NO_UNIX_SOCKETS)
 class TestUnix(TransportConformance):
     opener = registry.transports.load("unix")
 

@@ -11,6 +11,7 @@ from support.cut import ALL_SEEN, cut_at
 from support.lasted import lasted
 from support.outbound import connected, link_on, open_link, read_messages
 from support.transport import scripted
+from support.wait import wait_until
 
 from yarpy.carriers.base import Limits
 from yarpy.carriers.own.tcp import FastTcp, Tcp
@@ -95,8 +96,9 @@ def test_call_behind_a_stuck_message_has_its_limit_too() -> None:
                 link.send(Packet([bytes(10_000_000)]))
 
         writer = threading.Thread(target=write)
+        before = link.driver.bytes_out
         writer.start()
-        time.sleep(0.05)
+        wait_until(lambda: link.driver.bytes_out > before)
         started = time.monotonic()
         with pytest.raises(Timeout):
             link.call(Packet(["ask"], key=CALL), moment(0.1))
