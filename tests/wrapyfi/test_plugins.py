@@ -138,7 +138,7 @@ def test_a_plug_in_of_the_user_comes_first(monkeypatch: pytest.MonkeyPatch) -> N
 
     class Mine:
         def encode(self, value: object) -> tuple[bool, object]:
-            return True, {"__wrapyfi__": ("Mine", "1")}
+            return True, {"__wrapyfi__": ("Mine", "1", None, [None, (2,)])}
 
         def decode(self, tag: str, content: list[str]) -> tuple[bool, object]:
             return True, kind
@@ -146,7 +146,11 @@ def test_a_plug_in_of_the_user_comes_first(monkeypatch: pytest.MonkeyPatch) -> N
     monkeypatch.setitem(PluginRegistrar.encoder_registry, kind, Mine)
     monkeypatch.setitem(PluginRegistrar.decoder_registry, "Mine", Mine)
     text = json.dumps([kind()], cls=JsonEncoder)
-    assert json.loads(text) == [{"__wrapyfi__": ["Mine", "1"]}]
+    inner = [None, {"__wrapyfi__": ["tuple", [2]]}]
+    assert json.loads(text) == [{"__wrapyfi__": ["Mine", "1", None, inner]}]
+    assert json.dumps({"a": [1, None, (True,)]}, cls=JsonEncoder) == (
+        '{"a": [1, null, {"__wrapyfi__": ["tuple", [true]]}]}'
+    )
     assert json.loads(text, object_hook=JsonDecodeHook().object_hook) == [kind]
 
 

@@ -51,8 +51,8 @@ class _Planter(Planter):
         done, tree = (False, None) if plugin is None else plugin(**self._options).encode(value)
         if not done:
             return None
-        tag = tree[TAG]
-        return {TAG: [tag[0], *(Planter.plant(self, one) for one in tag[1:])]}
+        name, *rest = tree[TAG]
+        return {TAG: [name, *(x if type(x) in PLAIN else Planter.plant(self, x) for x in rest)]}
 
 
 class _Plugged(_Planter):
