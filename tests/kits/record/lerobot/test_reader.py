@@ -127,6 +127,21 @@ def test_what_other_sets_have(folder: Path) -> None:
         assert found.ports["/touch"].kinds == ["yarp/matrix"] and found.damages == []
 
 
+def test_pictures_that_are_in_the_rows(folder: Path) -> None:
+    cv2 = pytest.importorskip("cv2", reason="PNG needs OpenCV: pip install 'yarpy[vision]'")
+    said = json.loads((folder / "meta/info.json").read_text(encoding="utf-8"))
+    said["features"]["eye"] = {"dtype": "image", "shape": [4, 6, 3], "names": None}
+    (folder / "meta/info.json").write_text(json.dumps(said), encoding="utf-8")
+    files = [cv2.imencode(".png", np.full((4, 6, 3), n, "u1"))[1].tobytes() for n in range(7)]
+    rows = [{"bytes": data, "path": None} for data in (*files, b"none")]
+    rewrite(folder / DATA, lambda columns: columns.update(eye=rows))
+    with record.open(folder) as found:
+        assert found.ports["/eye"].kinds == ["yarp/image"]
+        assert len([*found.messages([STATE])]) == 8
+        assert [one.value.array.mean() for one in found.messages(["/eye"])] == [*range(7)]
+        assert "eye is no picture" in found.damages[0]
+
+
 @pytest.mark.peer("ffmpeg")
 def test_pictures(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     program("ffmpeg")

@@ -239,16 +239,13 @@ class LeRobotStorage:
                 if not np.array_equal(numbers, np.arange(first, first + len(numbers))):
                     raise DecodeError("its rows are no frames in their order")
                 arrays = [self._column(batch.column(one.name), one) for one in features]
-                found = [
-                    [
+                for row in range(len(numbers)):
+                    yield [
                         (one.port, _value(one, array[row]))
                         for one, array in zip(features, arrays, strict=True)
                     ]
-                    for row in range(len(numbers))
-                ]
             except self._errors as error:
                 raise DecodeError(f"{path}, from frame {first} on: {error}") from error
-            yield from found
             first += len(numbers)
         raise DecodeError(f"{path} ends before frame {first}")
 
