@@ -193,7 +193,7 @@ def test_joints_read_at_different_times_make_no_state(server, device, names, cap
     device.timestamps = lambda: [10.0, 11.5, 10.0]
     with (
         caplog.at_level(logging.WARNING),
-        yarpy.BufferedPort("/all", names=names) as everything,
+        yarpy.BufferedPort("/all", strict=True, names=names) as everything,
     ):
         everything.listen_to("/cap/mc/stateExt:o")
         wait_until(lambda: "apart: not published" in caplog.text)
