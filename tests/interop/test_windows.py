@@ -21,6 +21,8 @@ import yarpy
 
 pytestmark = pytest.mark.peer("windows")
 
+BEGIN = 3 * HANG  # seconds for a program of Windows to begin on a busy machine
+
 # It sends on what comes, in words or as a picture, and answers.
 ECHO = """
 import yarpy
@@ -57,7 +59,7 @@ def programs(cpp: CppYarp, tmp_path_factory: pytest.TempPathFactory) -> Iterator
         cpp.at("127.0.0.1", port) as programs,
         configured_for(programs, by_file=False),
     ):
-        server.wait_line("Ready!", timeout=HANG)
+        server.wait_line("Ready!", timeout=BEGIN)
         yield programs
 
 
@@ -66,7 +68,7 @@ def echo(programs: CppYarp, tmp_path_factory: pytest.TempPathFactory) -> Iterato
     """A program on Windows with ports."""
     server = f"127.0.0.1:{programs.port}"
     with on_windows(tmp_path_factory.mktemp("echo"), "-c", ECHO, server=server) as process:
-        process.wait_line("^open$", timeout=HANG)
+        process.wait_line("^open$", timeout=BEGIN)
         yield process
 
 
@@ -82,12 +84,14 @@ def test_cpp_asks_a_name_server_on_windows(programs: CppYarp) -> None:
 @pytest.mark.parametrize("carrier", ["tcp", "fast_tcp", "udp", "text"])
 @pytest.mark.parametrize("answer", ["tcp", "fast_tcp", "udp", "text"])
 def test_cpp_both_ways(programs: CppYarp, echo: Process, carrier: str, answer: str) -> None:
+    # Names of its own: the end of the one before may not have been noticed.
+    out, back = (f"/cpp/{carrier}/{answer}/{end}" for end in ("out", "back"))
     with CppProgram(programs) as peer:
         peer.do("out, back = yarp.Port(), yarp.BufferedPortBottle()")
         peer.do("back.setStrict(True)")
-        assert peer.do("out.open('/cpp/out'), back.open('/cpp/back')") == [True, True]
-        assert peer.do(f"yarp.Network.connect('/windows/out', '/cpp/back', '{answer}')")
-        assert peer.do(f"yarp.Network.connect('/cpp/out', '/windows/in', '{carrier}')")
+        assert peer.do(f"out.open('{out}'), back.open('{back}')") == [True, True]
+        assert peer.do(f"yarp.Network.connect('/windows/out', '{back}', '{answer}')")
+        assert peer.do(f"yarp.Network.connect('{out}', '/windows/in', '{carrier}')")
         peer.do("bottle = yarp.Bottle('hello (1 2.5) \"a b\"')")
         peer.do("out.write(bottle)")
         assert peer.do("back.read().toString()") == 'hello (1 2.5) "a b"'
@@ -116,14 +120,14 @@ def test_pictures_come_from_linux_and_go_back(programs: CppYarp, echo: Process) 
 def test_the_program_of_the_readme(tmp_path: Path) -> None:
     program, expected = windows.example()
     with on_windows(tmp_path, "-c", program) as process:
-        assert process.wait(HANG) == 0, process.said()
+        assert process.wait(BEGIN) == 0, process.said()
         assert process.stdout.strip() == expected
 
 
 def test_the_page_of_the_demo(browser: Browser, tmp_path: Path) -> None:
     with on_windows(tmp_path, "-m", "yarpy", "demo", "--no-browser") as demo:
-        url = demo.wait_line(r"(http://\S+)\s+<- open this", timeout=HANG)[1]
-        demo.wait_line("Ctrl-C ends it all", timeout=HANG)
+        url = demo.wait_line(r"(http://\S+)\s+<- open this", timeout=BEGIN)[1]
+        demo.wait_line("Ctrl-C ends it all", timeout=BEGIN)
         page = browser.open()
         page.goto(url, wait_until="commit")
         body = page.locator("body")
