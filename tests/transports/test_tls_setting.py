@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import sys
 from pathlib import Path
 
 import pytest
@@ -27,13 +28,18 @@ def test_a_mistake_does_not_mean_no(monkeypatch: pytest.MonkeyPatch) -> None:
         required()
 
 
-@pytest.mark.parametrize("name", ["YARP_CONFIG_HOME", "XDG_CONFIG_HOME", "HOME"])
+#: what says where a user's settings are, here
+OWN = {"win32": ["APPDATA"], "darwin": ["HOME"]}.get(sys.platform, ["XDG_CONFIG_HOME", "HOME"])
+
+
+@pytest.mark.parametrize("name", ["YARP_CONFIG_HOME", *OWN])
 def test_certificates_lie_beside_the_configuration(
     monkeypatch: pytest.MonkeyPatch, tmp_path: Path, name: str
 ) -> None:
     for each in ("YARPY_TLS_DIR", "YARP_CONFIG_HOME", "XDG_CONFIG_HOME", "APPDATA", "HOME"):
         monkeypatch.delenv(each, raising=False)
     monkeypatch.setenv(name, str(tmp_path))
+    assert folder().is_relative_to(tmp_path)
     assert folder() == conf_directory(os.environ) / "tls"
     assert not has_certificate()
     folder().mkdir(parents=True)
