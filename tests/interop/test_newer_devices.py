@@ -27,7 +27,7 @@ EYE, ARM = devices.Description("eye", "camera"), devices.Description("arm", "boa
 def newer(network: CppYarp) -> CppYarp:
     """C++ YARP 3.9 or later, with devices."""
     if network.version < (3, 9):
-        pytest.skip("this C++ YARP is older: it has none of them, or spells them otherwise")
+        pytest.skip("needs C++ YARP 3.9 or later: YARPY_CPP_YARP says where it is")
     device_host(network)
     return network
 
