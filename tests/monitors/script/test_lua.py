@@ -556,6 +556,14 @@ def test_script_is_stopped_and_goes_on_with_the_next_message(body: str) -> None:
         assert "it runs for more than 2000000 instructions" in str(caught.value)
 
 
+def test_memory_that_ends_outside_of_a_script_is_named() -> None:
+    def full() -> None:
+        raise MemoryError  # as lupa does, without a word
+
+    with pytest.raises(ScriptError, match=r"gate\.lua: not enough memory"):
+        load("PortMonitor.accept = function() return true end")._done(full)
+
+
 HUGE = "setmetatable({}, { __len = function() return 1 << 60 end, __index = type })"
 IN_THE_LIBRARY = [
     "string.find(string.rep('a', 5000), '.-.-.-.-b')",

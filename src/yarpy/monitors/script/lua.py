@@ -206,7 +206,7 @@ class LuaScript:
         try:
             done = function(*arguments)
         except Exception as error:  # out of memory outside a script
-            raise ScriptError(f"{self._path}: {error}") from error
+            raise ScriptError(f"{self._path}: {str(error) or 'not enough memory'}") from error
         if done is True:
             return None
         if done[0] is True:
