@@ -5,8 +5,9 @@
 
 Rules: a question names its writer, by a number that is the library's, and is numbered; its answer
 has the same. Both halves of a client, or of a server, say in their QoS that they belong together,
-so that who asks can wait until both know it. rmw_fastrtps_cpp says all this elsewhere, where the
-library does not let us read it: its services are not reached.
+so that who asks can wait until both know it; a server that knows a client's writer before its
+reader waits with the answer, which would go nowhere. rmw_fastrtps_cpp says all this elsewhere,
+where the library does not let us read it: its services are not reached.
 """
 
 from __future__ import annotations
@@ -15,6 +16,7 @@ import itertools
 import re
 from collections.abc import Callable
 from struct import Struct
+from time import monotonic, sleep
 from typing import Any, Final, NamedTuple
 
 from yarpy.errors import UnknownName, UnknownType
@@ -31,21 +33,27 @@ from yarpy.peers.ros2.token import SUBSCRIBER
 
 ROOM: Final = 100  # questions or answers that the library keeps until they are taken
 FAST_DDS: Final = b"\x01\x0f"  # so begin the identities of its endpoints
+MEETING: Final = 0.5  # seconds for the reader of a client whose writer is known
+LOOK: Final = 0.005  # seconds between looks for it
+MOST_MET: Final = 1000  # writers of clients that are remembered
 
 _UNSIGNED: Final = (1 << 64) - 1
 _ENCAPSULATION: Final = 4
 _HEADER: Final = Struct("<Qq")
 _SERVER = re.compile(rb"serviceid=([0-9a-fA-F.]+);")
+_CLIENT = re.compile(rb"clientid=([0-9a-fA-F.]+);")
 _numbers = itertools.count(1)
 
 
 class Came(NamedTuple):
-    """A question or answer: whose, which, and its bytes, as those of a message."""
+    """A question or answer: whose, which, and its bytes, as those of a message; `writer`: the
+    library's handle of who wrote it, here."""
 
     who: int
     number: int
     body: bytes
     time: int
+    writer: int = 0
 
 
 def topics(name: str) -> tuple[str, str]:
@@ -62,12 +70,13 @@ def joined(who: int, number: int, body: bytes) -> bytes:
     return body[:_ENCAPSULATION] + _HEADER.pack(who, number) + body[_ENCAPSULATION:]
 
 
-def parted(body: bytes, time: int) -> Came | None:
+def parted(body: bytes, time: int, writer: int = 0) -> Came | None:
     """Return what came; None for what is no question or answer."""
     if len(body) < _ENCAPSULATION + _HEADER.size or body[:2] != b"\0\1":
         return None
     who, number = _HEADER.unpack_from(body, _ENCAPSULATION)
-    return Came(who, number, body[:_ENCAPSULATION] + body[_ENCAPSULATION + _HEADER.size :], time)
+    content = body[:_ENCAPSULATION] + body[_ENCAPSULATION + _HEADER.size :]
+    return Came(who, number, content, time, writer)
 
 
 def type_of(part: Participant, name: str, said: str) -> Any:
@@ -126,6 +135,7 @@ class Pair:
         status = load().DDSStatus
         self.reader.set_status_mask(status.DataAvailable | status.SubscriptionMatched)
         self._matched = status.SubscriptionMatched
+        self._met: set[int] = set()  # writers of clients whose readers know us
         self.who: int = self.writer.get_instance_handle() & _UNSIGNED
         part.discovery.add(node, readers=(self.reader,), writers=(self.writer,))
         part.pump.add(self.reader, self._take)
@@ -136,12 +146,40 @@ class Pair:
         sample.body = joined(who, number, body)
         self.writer.write(sample)
 
+    def answer(self, came: Came, body: bytes) -> None:
+        """Send the answer to a question, once its asker can hear it."""
+        if came.writer not in self._met:
+            end = monotonic() + MEETING
+            while not self._is_met(came.writer) and monotonic() < end:
+                sleep(LOOK)
+            if len(self._met) >= MOST_MET:
+                self._met.clear()
+            self._met.add(came.writer)
+        self.write(came.who, came.number, body)
+
+    def _is_met(self, writer: int) -> bool:
+        """Return whether we know the reader of a client; True if the client has gone."""
+        try:
+            asks = None if self._closed else self.reader.get_matched_publication_data(writer)
+        except load().DDSException:
+            return True
+        if asks is None:
+            return True
+        said = _CLIENT.search(_userdata(asks.qos))
+        for item in self._matching(self.writer, "subscription"):
+            if item.participant_key == asks.participant_key:
+                found = _CLIENT.search(_userdata(item.qos))
+                if said is None or (found is not None and found[1] == said[1]):
+                    return True
+        return False
+
     def _take(self) -> Callable[[], None] | None:
         news = self.reader.take_status(self._matched)
         found = []
         for sample in self.reader.take(N=ROOM):
-            body = getattr(sample, "body", None)
-            came = None if body is None else parted(body, int(sample.sample_info.source_timestamp))
+            body, info = getattr(sample, "body", None), sample.sample_info
+            time = int(info.source_timestamp)
+            came = None if body is None else parted(body, time, info.publication_handle)
             if came is not None:
                 found.append(came)
         if not found and not news:

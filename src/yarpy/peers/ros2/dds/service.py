@@ -70,7 +70,7 @@ class DdsServer(Inbox):
                 *(self.port_name, self.name, item.failure),
             )
             return
-        pair.write(item.to.who, item.to.number, b"".join(item.body))
+        pair.answer(item.to, b"".join(item.body))
 
     def ended(self) -> bool:
         return self._over
