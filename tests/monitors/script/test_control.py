@@ -13,6 +13,8 @@ from yarpy.errors import LocalProtocolError
 from yarpy.monitors.event import Events
 from yarpy.monitors.script.control import Control
 
+NAME = "/a -> /control"  # no other test has it
+
 
 @pytest.fixture
 def events() -> Events:
@@ -26,13 +28,14 @@ def rung() -> list[float]:
 
 @pytest.fixture
 def control(events: Events, rung: list[float]) -> Iterator[Control]:
-    found = Control("", lambda: rung.append(time.monotonic()), "/a -> /b", events)
+    found = Control("", lambda: rung.append(time.monotonic()), NAME, events)
     yield found
     found.close()
+    wait_until(lambda: not timers(), what="the timer has ended")  # the next test looks for its own
 
 
 def timers() -> list[threading.Thread]:
-    return [one for one in threading.enumerate() if one.name == "yarpy trig /a -> /b"]
+    return [one for one in threading.enumerate() if one.name == f"yarpy trig {NAME}"]
 
 
 def test_constraint_depends_on_the_events_of_all(control: Control, events: Events) -> None:
