@@ -54,3 +54,8 @@ def test_what_is_none(changed: dict[str, Any], said: str) -> None:
 def test_what_is_no_json(text: bytes) -> None:
     with pytest.raises(DecodeError):
         parse_info(text)
+
+
+def test_another_version_is_told_in_plain_words() -> None:
+    with pytest.raises(DecodeError, match=r"^version v2\.1: LeRobot's own tools"):
+        parse_info(b'{"codebase_version": "v2.1", "fps": 10, "features": {}}')

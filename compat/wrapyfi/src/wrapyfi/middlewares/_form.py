@@ -33,7 +33,7 @@ class Native:
 
     @cached_property
     def text(self) -> Callable[[Any], str]:
-        """What makes the JSON of a value. Raises TypeError for what it cannot hold."""
+        """Return the function that makes the JSON of a value, or raises TypeError."""
         return JsonEncoder(**self._plugins, **self._encoder).encode
 
     @cached_property

@@ -91,6 +91,8 @@ def parse_info(text: bytes) -> Info:
             for name, what in said["features"].items()
             if name not in (*INDEXES, "timestamp")
         ]
+    except DecodeError:  # a ValueError, too
+        raise
     except (
         ValueError,
         KeyError,
