@@ -44,6 +44,7 @@ log = logger("yarpy.port")
 
 SETTLING: Final = 2.0  # seconds without progress of a connection that another takes the place of
 LOOK: Final = 0.05  # seconds between two looks at it
+LEAVING: Final = 0.5  # seconds for one whose sender has closed it, which we may not have seen yet
 
 
 class Hub(Protocol):
@@ -193,10 +194,18 @@ class Inputs:
 
     def rival(self, source: str) -> str:
         """Return why another input of that name is not taken, "" if it is: it may be the same
-        program, whose connection broke."""
-        if not any(_lives(link) for link in self.links if link.route.source == source):
-            return ""
-        return self._rivals.refusal(source)
+        program, whose connection broke, or which has closed it to make another one."""
+        why = self._rivals.refusal(source) if self._alive(source) else ""
+        limit = time.monotonic() + LEAVING
+        while why and time.monotonic() < limit:
+            alive = self._alive(source)
+            if not alive:
+                return ""
+            alive[0].served.wait(LOOK)
+        return why
+
+    def _alive(self, source: str) -> list[Inbound]:
+        return [link for link in self.links if link.route.source == source and _lives(link)]
 
     def find_room(self, peer: Peer) -> str:
         """Return why another input over datagrams finds no place, "" if it does; one that nobody

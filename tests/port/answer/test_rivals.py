@@ -83,3 +83,18 @@ def test_one_stays_and_the_other_is_told(
         stays.close()
         goes.connect(target, carrier, timeout=HANG)
         assert goes.write([1]) == 1
+
+
+def test_a_sender_may_close_its_connection_and_make_another_where_two_had_one_name() -> None:
+    """What it has closed may look alive to the receiver, which has not read its end yet."""
+    with (
+        yarpy.Port("/in", names=yarpy.LocalNames(), callback=lambda message: None) as in_,
+        yarpy.Port("/out", names=yarpy.LocalNames()) as out,
+    ):
+        in_._hub.inputs._rivals.replaced("/out")
+        in_._hub.inputs._rivals.replaced("/out")
+        assert "another program" in in_._hub.inputs._rivals.refusal("/out")
+        target = f"/{in_.address}"
+        for _ in range(30):  # each takes the place of the one before it
+            out.connect(target)
+            assert out.write([1]) == 1

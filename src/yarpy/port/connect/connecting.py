@@ -259,11 +259,9 @@ def dial(
         raise NotAllowed(refusal.useless(contact, why))
     target = wanted.label
     with hub.callbacks.later(), hub.dialling.alone(target):
-        replaced: list[Outbound] = []
-        if contact.name or kind.reaches.nameless:
-            replaced = [old for old in hub.outputs.links if old.route.target == target]
-            for old in replaced:
-                close_output(hub, old)
+        replaced = [old for old in hub.outputs.links if old.route.target == target]
+        for old in replaced:
+            close_output(hub, old)
         started = time.perf_counter()
         try:
             _check(hub, kind, spec)
