@@ -7,6 +7,7 @@ import yarpy
 from yarpy.errors import UnknownName
 from yarpy.kits.launch.application.application import Connection
 from yarpy.kits.launch.document.problem import Where
+from yarpy.kits.launch.supervise import keeper as keeper_
 from yarpy.kits.launch.supervise.keeper import Keeper
 
 
@@ -32,6 +33,22 @@ def test_a_connection_is_made_and_made_again(network: yarpy.LocalNames) -> None:
                 assert out.wait_for_outputs(timeout=HANG)
     finally:
         keeper.close()
+
+
+def test_a_port_that_does_not_come_may_have_another_name(
+    network: yarpy.LocalNames, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(keeper_, "_HURRY", 0.0)
+    keeper = Keeper([Connection("/robot/camera", "/in")], network)
+    (link,) = keeper.links
+    with yarpy.Port("/robot/cameras", names=network), yarpy.BufferedPort("/in", names=network):
+        keeper.start()
+        try:
+            wait_until(lambda: link.detail == 'for /robot/camera: did you mean "/robot/cameras"?')
+            with yarpy.Port("/robot/camera", names=network):
+                wait_until(lambda: link.state == "connected" and not link.detail)
+        finally:
+            keeper.close()
 
 
 def test_one_that_is_refused_says_why(network: yarpy.LocalNames) -> None:

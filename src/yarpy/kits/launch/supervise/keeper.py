@@ -18,6 +18,7 @@ from typing import Final
 
 from yarpy.errors import UnknownName, YarpError
 from yarpy.kits.launch.application.application import Connection
+from yarpy.kits.launch.document.advice import advice
 from yarpy.kits.launch.document.problem import NOWHERE
 from yarpy.names.base import NameClient
 from yarpy.names.default import DEFAULT
@@ -44,6 +45,8 @@ class Link:
         self.busy = False
         self.ends: tuple[str, str] | None = None
         self.looked = 0.0
+        self.advised: tuple[str, int] = ("", 0)
+        """The port that it waits for and how many there are, when a name like it was looked for."""
 
     @property
     def settled(self) -> bool:
@@ -161,7 +164,7 @@ class Keeper:
         for name in (link.wanted.source, link.wanted.target):
             plain = name.startswith("/") and ":" not in name
             if plain and name not in places:
-                link.state, link.detail, link.ends = "waiting", f"for {name}", None
+                self._await(link, name, places, now)
                 return
             ends.append(places.get(name, name))
         both = ends[0], ends[1]
@@ -169,6 +172,15 @@ class Keeper:
         if both != link.ends or again:
             link.ends = both
             self._look(link)
+
+    def _await(self, link: Link, name: str, places: dict[str, str], now: float) -> None:
+        """Say which port is not there; once it has had the time to come, also which one is."""
+        link.state, link.ends = "waiting", None
+        if now < self._hurry:
+            link.advised, link.detail = ("", 0), f"for {name}"
+        elif link.advised != (name, len(places)):
+            link.advised = name, len(places)
+            link.detail = f"for {name}{advice(name, [*places])}"
 
     def _look(self, link: Link) -> None:
         link.busy = True
