@@ -180,6 +180,10 @@ PEERS: dict[str, Callable[[], str]] = {
     "openssl": _programs("openssl", package="openssl"),
     "portaudio": _portaudio,
     "actionlib": _modules("actionlib", packages="python3-actionlib"),
+    "dynamic_reconfigure": _modules(
+        *("rospy", "dynamic_reconfigure.server", "dynamic_reconfigure.client"),
+        packages="python3-dynamic-reconfigure",
+    ),
     "ros": _modules(
         *("rospy", "rosmsg", "std_msgs.msg", "sensor_msgs.msg"),
         packages="python3-rospy python3-rosmsg python3-std-msgs python3-sensor-msgs",

@@ -5,7 +5,9 @@ from typing import Any
 import pytest
 
 from yarpy.names.node_name import NodeName
+from yarpy.peers.ros.master import RosMaster
 from yarpy.peers.ros.membership import Membership
+from yarpy.peers.ros.parameters import Followed
 from yarpy.peers.ros.slave import CALLS, answer
 
 
@@ -18,6 +20,7 @@ class Node:
     master_uri = "http://a:1/"
     host = "127.0.0.1"
     reason = ""
+    parameters = Followed("/n", RosMaster(master_uri), "http://b:2/")
 
     def shut_down(self, reason: str) -> None:
         self.reason = reason

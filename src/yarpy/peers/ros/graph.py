@@ -25,6 +25,7 @@ from yarpy.names.node_name import CLIENT, PUBLISHER, SERVER
 from yarpy.peers.ros import slave
 from yarpy.peers.ros.master import RosMaster, advertised_host, uri_of
 from yarpy.peers.ros.membership import GRAPH_NAME, Membership, NodeAddress
+from yarpy.peers.ros.parameters import Followed
 from yarpy.port.hub import Hub
 from yarpy.port.mailbox import Callback, Mailbox
 from yarpy.route import Declared
@@ -78,6 +79,7 @@ class GraphNode:
         )
         self.hub.callbacks.node = self._answer
         self.place = NodeAddress(name, master, uri_of(self.host, self.hub.port), self.host)
+        self.parameters = Followed(name, master, self.place.uri)
         threading.Thread(target=self._run, name=f"yarpy node {name}", daemon=True).start()
 
     @property
@@ -152,6 +154,7 @@ class GraphNode:
         """No member is left."""
         self._ended = True
         self._wake.set()
+        self.parameters.end()
         self.hub.close()
 
     # -- the thread -------------------------------------------------------------------------------
@@ -184,7 +187,7 @@ class GraphNode:
 
     def _ask_master(self) -> None:
         """Register again what the master does not know. Raises NoNameServer and others."""
-        if not self.members:
+        if not (self.members or self.parameters):
             return
         found = self.master.node(self.name)
         known = found is not None and uri_of(found.host, found.port) == self.place.uri
@@ -195,6 +198,7 @@ class GraphNode:
         members, problem = self.members, ""
         if again:
             self._unknown.update(members)  # whatever happens to the first of them
+            self.parameters.forget()
         for member in members:
             if member not in self._unknown:
                 continue
@@ -259,6 +263,7 @@ class Graph:
             if node.process == os.getpid():
                 for member in node.members:
                     node.remove(member)
+                node.parameters.end()
 
 
 GRAPH: Final = Graph()

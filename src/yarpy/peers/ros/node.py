@@ -19,14 +19,13 @@ import os
 import sys
 import time
 from collections.abc import Callable, Iterator, Sequence
-from typing import Any, Final, Self, TypeAlias, TypeVar
+from typing import Any, Self, TypeAlias, TypeVar
 
 from yarpy.data.stamp import Stamp
 from yarpy.errors import (
     AddressError,
     LocalProtocolError,
     NoNameServer,
-    UnknownName,
     YarpError,
 )
 from yarpy.link.send.outbound import Outbound
@@ -41,6 +40,7 @@ from yarpy.peers.ros.membership import QUEUE_SIZE, Membership
 from yarpy.peers.ros.message.library import Service, default_library
 from yarpy.peers.ros.message.message import Message as RosMessage
 from yarpy.peers.ros.message.message import Time
+from yarpy.peers.ros.parameters import Followed, Parameters
 from yarpy.peers.ros.role import RosRole, services, without_masters
 from yarpy.peers.ros.rosout import Rosout
 from yarpy.peers.ros.service.calls import Calls
@@ -58,7 +58,6 @@ P = TypeVar("P", bound=BasePort)
 
 #: package/Type, or a class of messages
 Type: TypeAlias = "str | type[RosMessage]"
-_MISSING: Final = object()
 
 
 def _complete(message: Any, now: Stamp) -> None:
@@ -171,7 +170,7 @@ def value_of(message: Message) -> Any:
     return getattr(message, "ros", None) or message.value
 
 
-class Node:
+class Node(Parameters):
     """A node. It is registered with the first of its topics and services.
 
     master: as ROS_MASTER_URI; without it the master of the environment or of `yarpy detect --ros`.
@@ -316,33 +315,6 @@ class Node:
         """Wait until somebody serves it; False if time is over. Raises NoNameServer."""
         return self._calls.wait(self.resolve(service), timeout)
 
-    # -- parameters -------------------------------------------------------------------------------
-
-    def get_param(self, name: str, default: Any = _MISSING) -> Any:
-        """A parameter, or all below a name as a dict. Without a default, LookupError (UnknownName)
-        if there is none."""
-        try:
-            return self.master.call("getParam", self.name, self.resolve(name))
-        except LocalProtocolError as error:
-            if default is not _MISSING:
-                return default
-            raise UnknownName(str(error)) from error
-
-    def set_param(self, name: str, value: Any) -> None:
-        """Set a parameter: bool, int of 32 bits, float, str, list, or a dict of them."""
-        self.master.call("setParam", self.name, self.resolve(name), value)
-
-    def has_param(self, name: str) -> bool:
-        """Return whether there is such a parameter."""
-        return bool(self.master.call("hasParam", self.name, self.resolve(name)))
-
-    def delete_param(self, name: str) -> None:
-        """Delete a parameter. LookupError (UnknownName) if there is none."""
-        try:
-            self.master.call("deleteParam", self.name, self.resolve(name))
-        except LocalProtocolError as error:
-            raise UnknownName(str(error)) from error
-
     # -- time -------------------------------------------------------------------------------------
 
     def now(self) -> float:
@@ -399,6 +371,10 @@ class Node:
 
     def __repr__(self) -> str:
         return f"<Node {self.name} at {self.uri}>"
+
+    @property
+    def _followed(self) -> Followed:
+        return self._node.parameters
 
     def _member(self, name: str, category: Category, type_: str, kind: Any) -> Membership:
         if self._closed:

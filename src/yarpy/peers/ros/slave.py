@@ -15,6 +15,7 @@ from yarpy.data.xmlrpc import Plain
 from yarpy.names.node_name import PUBLISHER, SUBSCRIBER
 from yarpy.peers.ros.graph_name import ros_name
 from yarpy.peers.ros.membership import Membership
+from yarpy.peers.ros.parameters import Followed
 from yarpy.registry import graphs
 
 
@@ -32,6 +33,10 @@ class Node(Protocol):
     @property
     def host(self) -> str:
         """The host of its topics."""
+
+    @property
+    def parameters(self) -> Followed:
+        """The parameters that it is told of."""
 
     def shut_down(self, reason: str) -> None:
         """Leave the graph, soon."""
@@ -120,6 +125,13 @@ def _publisher_update(node: Node, arguments: Sequence[Any]) -> Plain:
     return _done(0) if members else Plain([0, f"nobody here subscribes to {topic}", 0])
 
 
+def _param_update(node: Node, arguments: Sequence[Any]) -> Plain:
+    key = ros_name(_text(arguments, 0))
+    if node.parameters.change(key):
+        return _done(0)
+    return Plain([-1, f"nobody here subscribes to the parameter {key}", 0])
+
+
 def _shutdown(node: Node, arguments: Sequence[Any]) -> Plain:
     node.shut_down(_text(arguments, 0))
     return _done(0)
@@ -132,7 +144,7 @@ CALLS: Final[dict[str, Callable[[Node, Sequence[Any]], Plain]]] = {
     "getPid": lambda node, arguments: _done(os.getpid()),
     "getPublications": lambda node, arguments: _topics(node, PUBLISHER),
     "getSubscriptions": lambda node, arguments: _topics(node, SUBSCRIBER),
-    "paramUpdate": lambda node, arguments: _done(0),
+    "paramUpdate": _param_update,
     "publisherUpdate": _publisher_update,
     "requestTopic": _request_topic,
     "shutdown": _shutdown,

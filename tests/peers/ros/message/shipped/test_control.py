@@ -17,9 +17,11 @@ MESSAGES = {
     "control_msgs/PointHeadGoal": "8b92b1cd5e06c8a94c917dc3209a4c1d",
     "control_msgs/SingleJointPositionGoal": "fbaaa562a23a013fd5053e5f72cbb35c",
     "actionlib_tutorials/FibonacciAction": "f59df5767bf7634684781c92598b2406",
+    "dynamic_reconfigure/ConfigDescription": "757ce9d44ba8ddd801bb30bc456f946f",
     "rospy_tutorials/Floats": "420cd38b6b071cd49f2970c3e2cee511",
 }
 SERVICES = {
+    "dynamic_reconfigure/Reconfigure": "bb125d226a21982a4a98760418dc2672",
     "nav_msgs/GetMap": "6cdd0a18e0aff5b0a3ca2326a89b54ff",
     "rospy_tutorials/AddTwoInts": "6a2e34150c00229791cc89ff309fff21",
     "roscpp_tutorials/TwoInts": "6a2e34150c00229791cc89ff309fff21",

@@ -1,4 +1,5 @@
-"""Trajectories of joints, grippers; actions, diagnostics, the clock, the log; tutorials.
+"""Trajectories of joints, grippers; actions, diagnostics, the clock, the log; parameters of
+dynamic_reconfigure; tutorials.
 
 Rules: as in `shipped/__init__.py`.
 """
@@ -73,6 +74,22 @@ MESSAGES: Final = {
     "rospy_tutorials/Floats": "float32[] data",
     "rospy_tutorials/HeaderString": "Header header; string data",
     "roscpp/Logger": "string name; string level",
+    "dynamic_reconfigure/BoolParameter": "string name; bool value",
+    "dynamic_reconfigure/DoubleParameter": "string name; float64 value",
+    "dynamic_reconfigure/IntParameter": "string name; int32 value",
+    "dynamic_reconfigure/StrParameter": "string name; string value",
+    "dynamic_reconfigure/GroupState": "string name; bool state; int32 id; int32 parent",
+    "dynamic_reconfigure/Config": (
+        "BoolParameter[] bools; IntParameter[] ints; StrParameter[] strs; "
+        "DoubleParameter[] doubles; GroupState[] groups"
+    ),
+    "dynamic_reconfigure/ParamDescription": (
+        "string name; string type; uint32 level; string description; string edit_method"
+    ),
+    "dynamic_reconfigure/Group": (
+        "string name; string type; ParamDescription[] parameters; int32 parent; int32 id"
+    ),
+    "dynamic_reconfigure/ConfigDescription": "Group[] groups; Config max; Config min; Config dflt",
 }
 
 SERVICES: Final = {
@@ -83,6 +100,7 @@ SERVICES: Final = {
         "time time; ---; string[] name; float64[] position; float64[] velocity; "
         "float64[] acceleration"
     ),
+    "dynamic_reconfigure/Reconfigure": "Config config; ---; Config config",
     "roscpp/Empty": "---",
     "roscpp/GetLoggers": "---; Logger[] loggers",
     "roscpp/SetLoggerLevel": "string logger; string level; ---",
