@@ -7,12 +7,14 @@ import tempfile
 import threading
 import time
 from collections.abc import Iterator
+from contextlib import closing
 from pathlib import Path
 
 import pytest
 from support.system import NO_ROOT, NO_UNIX_SOCKETS
 
-from yarpy.errors import LocalProtocolError
+from yarpy.errors import LocalProtocolError, PortClosed, Timeout
+from yarpy.scope import Scope, moment
 from yarpy.transports import unix
 from yarpy.transports.unix import UnixTransport, open_unix, runtime_directory
 
@@ -68,6 +70,14 @@ def test_what_was_taken_is_not_known_once_another_thread_has_closed_it() -> None
     listening.close()
 
 
+def test_nobody_is_waited_for_beyond_the_call_nor_the_life_of_its_port() -> None:
+    with closing(open_unix(False, INITIATOR, ACCEPTOR)) as dialling:
+        with Scope(moment(0.1)), pytest.raises(Timeout, match="the peer is silent"):
+            dialling.ready()
+        with Scope() as call, pytest.raises(PortClosed, match="the end of the port"):
+            dialling.ready(lambda: call.end("the end of the port"))
+
+
 def test_dialling_side_may_come_first() -> None:
     dialling = open_unix(False, INITIATOR, ACCEPTOR)
     thread = threading.Thread(target=dialling.ready)
@@ -88,7 +98,7 @@ def test_peer_that_never_comes(directory: Path, monkeypatch: pytest.MonkeyPatch)
         listening.ready()
     assert list(directory.iterdir()) == []
     dialling = open_unix(False, INITIATOR, ACCEPTOR)
-    with pytest.raises(FileNotFoundError):
+    with pytest.raises(Timeout, match="the peer is silent"):
         dialling.ready()
     dialling.close()
 

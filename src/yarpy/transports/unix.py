@@ -17,7 +17,8 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import Final
 
-from yarpy.errors import LocalProtocolError
+from yarpy import scope
+from yarpy.errors import LocalProtocolError, Timeout
 from yarpy.platform.user import user
 from yarpy.transports.base import MSG_DONTWAIT, Address, Transport
 from yarpy.transports.opener import Elsewhere, Opener
@@ -111,17 +112,17 @@ class UnixTransport(TcpTransport):
                 Path(self._path).unlink(missing_ok=True)
             self.sock.setblocking(True)
         else:
-            deadline = time.monotonic() + TIMEOUT
+            deadline = time.monotonic() + scope.left(TIMEOUT)
             while True:
                 try:
                     self.sock.connect(self._path)
                     break
                 except (FileNotFoundError, ConnectionRefusedError):
-                    if time.monotonic() > deadline:
-                        raise
+                    if time.monotonic() >= deadline:
+                        raise Timeout("the peer is silent") from None
                     if look is not None:
                         look()
-                    time.sleep(0.01)  # the other side is about to listen
+                    scope.sleep(0.01)  # the other side is about to listen
 
     def set_dscp(self, tos: int) -> None:
         raise LocalProtocolError("a Unix socket has no packet priority; use tcp for that")
