@@ -83,8 +83,12 @@ def test_a_busy_port(lone, port):
 def test_a_server_that_runs_already(lone, server):
     said = lone.run("server", "--ip", "127.0.0.1", "--socket", str(server.port))
     assert said.returncode == 1
-    assert f"is running here already, at 127.0.0.1:{server.port};" in said.stderr
+    here = f"is running here already, at 127.0.0.1:{server.port}: "
+    assert f"{here}`yarpy conf 127.0.0.1 {server.port}` lets programs use it;" in said.stderr
     assert not conf(lone).exists()
+    assert lone.run("conf", "127.0.0.1", str(server.port)).returncode == 0
+    said = lone.run("server", "--ip", "127.0.0.1", "--socket", str(server.port))
+    assert f"{here}programs use it;" in said.stderr
 
 
 def test_another_address_is_stored_only_when_asked(lone, port):

@@ -349,6 +349,7 @@ def _nothing(text: str) -> None:
 
 def _explained(server: Server, error: AddressError) -> AddressError:
     """The name server that has the port number, if it is one."""
+    from yarpy.config.configuration import configuration
 
     try:
         with yarpy.YarpNameClient("127.0.0.1", server.port, timeout=1.0) as client:
@@ -357,7 +358,10 @@ def _explained(server: Server, error: AddressError) -> AddressError:
         known = None
     if known is None:
         return error
+    host, number = known.host, known.port
+    used = any((one.host, one.port) == (host, number) for one in configuration(os.environ).servers)
+    use = "programs use it" if used else f"`yarpy conf {host} {number}` lets programs use it"
     return AddressError(
-        f"a name server for {known.name} is running here already, at {known.address}; use it, end "
-        "it, or give this one another number with --socket"
+        f"a name server for {known.name} is running here already, at {known.address}: {use}; for "
+        "another one end it, or give this one another number with --socket"
     )
