@@ -10,10 +10,11 @@ from itertools import groupby
 
 import pytest
 from support.lasted import lasted
-from support.wait import HANG, wait_until
+from support.wait import HANG, runs, wait_until
 
 from yarpy.nameserver.local import LocalNames
 from yarpy.port import inputs
+from yarpy.port.connection import ConnectionEvent
 from yarpy.port.port import Port
 from yarpy.wire.message import Message
 
@@ -63,9 +64,9 @@ def _is_over(sock: socket.socket) -> bool:
 
 def test_of_connections_that_one_sender_makes_at_once_one_stays(names: LocalNames) -> None:
     """With two of them every message would come twice."""
-    events: list[bool] = []
+    events: list[ConnectionEvent] = []
     with Port("/in", names=names) as in_:
-        in_.on_connection(lambda event: events.append(event.created))
+        in_.on_connection(events.append)
         for number in range(50):
             socks = _dial_at_once(in_, b"CONNECT /same%d\r\n" % number, 4)
             # The first ones are replaced; who comes then is taken for a rival of that name.
@@ -78,9 +79,33 @@ def test_of_connections_that_one_sender_makes_at_once_one_stays(names: LocalName
             for sock in socks:
                 sock.close()
             wait_until(lambda: not in_.inputs)
-        wait_until(lambda: events.count(True) == events.count(False))
-        assert events == [True, False] * events.count(True)
+        wait_until(lambda: sum(2 * event.created - 1 for event in events) == 0)
+        for number in range(50):
+            told = [event.created for event in events if event.source == f"/same{number}"]
+            assert told == [True, False] * (len(told) // 2)
         assert in_.stats.past.inputs.messages == 50
+
+
+def test_the_end_of_a_connection_is_told_before_the_next_one_of_its_sender(
+    names: LocalNames,
+) -> None:
+    """What is told last is what is: a program would take a sender that is there for gone."""
+    events: list[bool] = []
+
+    def told(event: ConnectionEvent) -> None:
+        if not event.created:
+            wait_until(lambda: len(events) != 1 or runs("Inputs._let_end"))
+        events.append(event.created)
+
+    with Port("/in", names=names) as in_:
+        in_.on_connection(told)
+        for _ in range(2):
+            with socket.create_connection(("127.0.0.1", in_.contact.port)) as sock:
+                sock.sendall(b"CONNECT /same\r\n")
+                wait_until(lambda: in_.inputs and events)
+            wait_until(lambda: not in_.inputs)
+        wait_until(lambda: len(events) == 4)
+    assert events == [True, False, True, False]
 
 
 def test_nothing_of_a_replaced_connection_comes_after_its_successor(names: LocalNames) -> None:
@@ -96,8 +121,8 @@ def test_nothing_of_a_replaced_connection_comes_after_its_successor(names: Local
             for sock in socks:
                 sock.close()
             wait_until(lambda: not in_.inputs)
-            runs = [who for who, _ in groupby(came)]
-            assert runs and len(runs) == len(set(runs))
+            each = [who for who, _ in groupby(came)]
+            assert each and len(each) == len(set(each))
 
 
 def test_a_program_that_reads_late_gets_what_a_replaced_connection_brought_first(

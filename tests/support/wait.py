@@ -26,19 +26,25 @@ def wait_until(condition: Callable[[], object], timeout: float = HANG, what: str
         time.sleep(0.002)
 
 
+def runs(function: str, thread: int = 0) -> bool:
+    """Return whether a thread, or the one with that number, is inside `function` (its qualified
+    name)."""
+    frames = sys._current_frames()
+    for frame in [frames.get(thread)] if thread else frames.values():
+        while frame is not None:
+            if frame.f_code.co_qualname == function:
+                return True
+            frame = frame.f_back
+    return False
+
+
 def inside(function: str, act: Callable[[], object]) -> threading.Thread:
     """Call `act` in a thread as soon as the calling thread is inside `function` (its qualified
     name), and return that thread, started."""
     caller = threading.get_ident()
 
-    def arrived() -> bool:
-        frame = sys._current_frames().get(caller)
-        while frame is not None and frame.f_code.co_qualname != function:
-            frame = frame.f_back
-        return frame is not None
-
     def run() -> None:
-        wait_until(arrived, what=f"inside {function}")
+        wait_until(lambda: runs(function, caller), what=f"inside {function}")
         act()
 
     thread = threading.Thread(target=run)

@@ -87,6 +87,7 @@ class Inputs:
         self.receive: Callable[[Inbound, Message], None] = mailbox.put  # what links call
         self.links: tuple[Inbound, ...] = ()  # one at most from each rooted name
         self.leaving: tuple[Inbound, ...] = ()  # were inputs; their threads have not ended yet
+        self._telling: tuple[Inbound, ...] = ()  # have ended; the program is being told
         self.past = Past()
         self.on_change: Callable[[], None] = lambda: None  # the reader looks at them again
         self.budget = budget
@@ -145,7 +146,10 @@ class Inputs:
         while True:
             with self.lock:  # of connections that come at once each replaces the one before it
                 rooted = source.startswith("/")
-                older = tuple(item for item in self.links if rooted and item.route.source == source)
+                older, ended = (
+                    tuple(item for item in items if rooted and item.route.source == source)
+                    for items in (self.links, self._telling)
+                )
                 others = tuple(item for item in self.links if item not in older)
                 late = hub.life.closing
                 full = ""
@@ -175,14 +179,15 @@ class Inputs:
         for old in older:
             old.replaced = not old.closing
             old.close()
+        for old in (*ended, *older):
             if old.thread is not waited_by():
                 self._let_end(old)
 
     def _let_end(self, old: Inbound) -> None:
-        """Wait until an earlier connection has ended: what it still brings comes before what the
-        new one brings. It has SETTLING after each message, and as long as it takes while the
-        program does not read. One that is at work on a question is not waited for: nobody waits
-        for the answer any more."""
+        """Wait until an earlier connection has ended: what it still brings, and word of its end,
+        come before what the new one brings. It has SETTLING after each message, and as long as it
+        takes while the program does not read. One that is at work on a question is not waited for:
+        nobody waits for the answer any more."""
         came, limit = old.counter.messages, time.monotonic() + SETTLING
         while old.receiver.question is None and not old.served.wait(LOOK):
             if self._hub.life.closing:
@@ -283,9 +288,13 @@ class Inputs:
     def input_ended(self, link: Inbound, reason: str, quit_: bool) -> None:
         """Forget a link that has ended; in good order if `quit_`."""
         hub = self._hub
-        if not self._forget(link):
+        if not self._forget(link, to_tell=True):
             return
-        hub.callbacks.report(link, created=False, reason=reason)
+        try:
+            hub.callbacks.report(link, created=False, reason=reason)
+        finally:
+            with self.lock:
+                self._telling = tuple(item for item in self._telling if item is not link)
         if quit_ or hub.life.closing:
             return
         if link.replaced:  # it has broken: its sender has dialled again before we saw that
@@ -301,11 +310,13 @@ class Inputs:
             if link.route.source == source and link.asked == NOTHING_ASKED and link.wanted is None:
                 self._hub.saved_qos.give(link)
 
-    def _forget(self, link: Inbound) -> bool:
+    def _forget(self, link: Inbound, to_tell: bool = False) -> bool:
         with self.lock:
             known = link in (*self.links, *self.leaving)
             if known:
                 self.past.add(link.counter, link.lost)
+                if to_tell:
+                    self._telling = (*self._telling, link)
             while True:
                 before, leaving = self.links, self.leaving
                 left = tuple(item for item in before if item is not link)
@@ -336,7 +347,7 @@ class Inputs:
 
     def abandon(self) -> None:
         """In a forked process: they are its parent's."""
-        self.links = self.leaving = ()
+        self.links = self.leaving = self._telling = ()
 
 
 def _lives(link: Inbound) -> bool:
