@@ -5,9 +5,9 @@ from __future__ import annotations
 import os
 import subprocess
 import sys
-from pathlib import Path
 
 import pytest
+from support.wait import HANG
 
 import yarpy
 from yarpy.cli.verbs.completion import SCRIPTS
@@ -33,6 +33,13 @@ complete -C "$argv[1]" | cut -f 1
 """,
 }
 
+YARPY = f"""#!{sys.executable}
+from yarpy.cli import completion, start
+
+completion.TIMEOUT = {HANG}  # a busy machine takes more than what a person waits
+start.main()
+"""
+
 
 @pytest.fixture(
     params=["bash", *(pytest.param(name, marks=pytest.mark.peer(name)) for name in ("zsh", "fish"))]
@@ -40,17 +47,22 @@ complete -C "$argv[1]" | cut -f 1
 def offered(request, cli, tmp_path):
     """What a shell makes of a line."""
     shell = request.param
-    path = f"{Path(sys.executable).parent}{os.pathsep}{os.environ['PATH']}"
-    script = tmp_path / "trial"
+    program, script = tmp_path / "yarpy", tmp_path / "trial"
+    program.write_text(YARPY)
+    program.chmod(0o755)
     script.write_text(TRIALS[shell])
 
     def ask(line: str) -> list[str]:
         done = subprocess.run(
             [shell, script, line],
-            env={**cli.environment, "PATH": path, "HOME": str(tmp_path)},
+            env={
+                **cli.environment,
+                "PATH": f"{tmp_path}{os.pathsep}{os.environ['PATH']}",
+                "HOME": str(tmp_path),
+            },
             capture_output=True,
             text=True,
-            timeout=60,
+            timeout=2 * HANG,
         )
         assert done.stderr == ""
         return done.stdout.split()
