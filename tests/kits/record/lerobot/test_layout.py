@@ -33,6 +33,7 @@ def feature(name: str = "x", dtype: Any = "float32", shape: Any = (1,)) -> dict[
     [
         ({"codebase_version": "v2.1"}, "LeRobot's own tools make version 3.0"),
         ({"fps": 0}, "frames a second"),
+        ({"fps": 1e-310}, "frames a second"),
         ({"fps": "fast"}, "nothing that can be read"),
         ({"data_path": "../{chunk_index.__class__}"}, "only data/chunk"),
         ({"features": []}, "nothing that can be read"),

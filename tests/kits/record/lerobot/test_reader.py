@@ -1,6 +1,7 @@
 """Data sets of LeRobot as recordings: what was written is read, and what lies is told."""
 
 import json
+import os
 import shutil
 from collections.abc import Callable
 from pathlib import Path
@@ -44,6 +45,14 @@ def rewrite(path: Path, change: Callable[[dict[str, list[Any]]], object]) -> Non
     change(columns)
     kept = {name: arrow.array(column) for name, column in columns.items()}
     parquet.write_table(arrow.table(kept), path)
+
+
+def add(folder: Path, name: str, kind: str, shape: list[int], column: list[Any]) -> None:
+    """Let a set have one more feature."""
+    info = json.loads((folder / "meta/info.json").read_text(encoding="utf-8"))
+    info["features"][name] = {"dtype": kind, "shape": shape, "names": None}
+    (folder / "meta/info.json").write_text(json.dumps(info), encoding="utf-8")
+    rewrite(folder / DATA, lambda columns: columns.update({name: column}))
 
 
 def test_what_was_written(folder: Path) -> None:
@@ -231,6 +240,55 @@ def test_a_file_that_is_gone(folder: Path) -> None:
 def test_episodes_that_are_none(folder: Path, change: Any) -> None:
     rewrite(folder / EPISODES, change)
     with pytest.raises(DecodeError, match=r"meta.episodes"):
+        record.open(folder)
+
+
+@pytest.mark.parametrize("name", [DATA, EPISODES])
+@pytest.mark.skipif(not hasattr(os, "mkfifo"), reason="this system has no named pipes")
+def test_a_pipe_is_not_waited_for(folder: Path, name: str) -> None:
+    (folder / name).unlink()
+    os.mkfifo(folder / name)
+    with pytest.raises(DecodeError, match="no such file"), record.open(folder) as found:
+        assert [one.port for one in found] == ["/task", "/task"]
+        raise DecodeError(found.damages[0])
+
+
+@pytest.mark.parametrize(
+    ("kind", "column"),
+    [
+        ("float32", [{"x": 1.0}] * 8),
+        ("float32", [[{"x": 1.0}]] * 8),
+        ("image", [1.0] * 8),
+        ("image", ["x"] * 8),
+    ],
+    ids=["struct", "structs", "number", "text"],
+)
+def test_a_column_of_another_kind(folder: Path, kind: str, column: list[Any]) -> None:
+    add(folder, "other", kind, [1], column)
+    with record.open(folder) as found:
+        assert not [*found.messages(["/other"])]
+        assert DATA in found.damages[0]
+
+
+def test_a_text_that_takes_no_room_in_the_file(folder: Path) -> None:
+    """Two gigabytes of one text in 2000 rows are one megabyte in memory, and one row at a time."""
+    text = "x" * (1 << 20)
+    add(folder, "other", "string", [1], [text] * 8)
+    table = parquet.read_table(folder / DATA)
+    rewrite(folder / EPISODES, lambda columns: columns.update(dataset_to_index=[5, 2000]))
+    more = {name: table[name].take([0] * 2000) for name in table.column_names if name != "other"}
+    more["index"] = arrow.array(range(2000))
+    more["other"] = arrow.DictionaryArray.from_arrays([0] * 2000, [text])
+    parquet.write_table(arrow.table(more), folder / DATA)
+    before = arrow.default_memory_pool().max_memory()
+    with record.open(folder) as found:
+        assert next(iter(found.messages(["/other"]))).value == [text]
+    assert arrow.default_memory_pool().max_memory() < before + (1 << 27)
+
+
+def test_a_long_task(folder: Path) -> None:
+    rewrite(folder / EPISODES, lambda columns: columns.update(tasks=[["x" * (1 << 21)]] * 2))
+    with pytest.raises(DecodeError, match="a task of 2097152 characters"):
         record.open(folder)
 
 

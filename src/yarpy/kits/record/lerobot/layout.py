@@ -27,7 +27,8 @@ _FILE: Final = "chunk-{chunk_index:03d}/file-{file_index:03d}"
 DATA_PATH: Final = f"data/{_FILE}.parquet"
 VIDEO_PATH: Final = f"videos/{{video_key}}/{_FILE}.mp4"
 _NAME: Final = re.compile(r"[A-Za-z0-9_-][A-Za-z0-9_.-]{0,199}", re.ASCII)
-_FASTEST: Final = 1_000_000  # frames a second
+_SLOWEST: Final = 0.001  # frames a second
+_FASTEST: Final = 1_000_000
 
 
 def is_dataset(path: Path) -> bool:
@@ -81,7 +82,7 @@ def parse_info(text: bytes) -> Info:
         version, fps = str(said["codebase_version"]), float(said["fps"])
         if not version.startswith("v3."):
             raise DecodeError(f"version {version[:20]}: LeRobot's own tools make version 3.0 of it")
-        if not 0 < fps <= _FASTEST:
+        if not _SLOWEST <= fps <= _FASTEST:
             raise DecodeError(f"{fps} frames a second")
         for key, usual in (("data_path", DATA_PATH), ("video_path", VIDEO_PATH)):
             if said.get(key) not in (None, usual):

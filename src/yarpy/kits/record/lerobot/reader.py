@@ -9,6 +9,7 @@ Some rows and some pictures are in memory at a time. What is wrong is told, and 
 from __future__ import annotations
 
 import json
+import sys
 from collections.abc import Container, Generator, Iterator, Sequence
 from contextlib import ExitStack, closing
 from pathlib import Path
@@ -38,9 +39,11 @@ from yarpy.limit import (
 
 TASK: Final = "/task"
 _BATCH: Final = 1024  # rows at a time
+_LONGEST: Final = 16  # bytes of a value that is no text
+_TASKS: Final = "tasks"
 _EPISODE: Final = (
     "episode_index", "dataset_from_index", "dataset_to_index", "data/chunk_index",
-    "data/file_index", "tasks",
+    "data/file_index",
 )  # fmt: skip
 _VIDEO: Final = ("chunk_index", "file_index", "from_timestamp")
 _KINDS: Final = {"video": "yarp/image", "image": "yarp/image", "string": "yarp/bottle"}
@@ -73,8 +76,8 @@ class LeRobotStorage:
             raise UnknownPlugin(NEEDS) from None
         self._arrow: Any = pyarrow
         self._errors = (
-            pyarrow.ArrowException, OSError, ValueError, KeyError, TypeError, OverflowError,
-            MemoryError,
+            pyarrow.ArrowException, OSError, ValueError, KeyError, TypeError, AttributeError,
+            OverflowError, MemoryError,
         )  # fmt: skip
         self.path = Path(path)
         self.complete = True
@@ -108,10 +111,15 @@ class LeRobotStorage:
         columns = [*_EPISODE, *(f"videos/{key}/{word}" for key in keys for word in _VIDEO)]
         end = number = 0
         for path in sorted(self.path.glob("meta/episodes/chunk-*/file-*.parquet")):
-            for batch in self._batches(path, columns, _BATCH):
-                for row in batch.to_pylist():
+            for batch in self._batches(path, [*columns, _TASKS], _BATCH):
+                if missing := {*columns, _TASKS} - {*batch.schema.names}:
+                    raise DecodeError(f"{path} has no {min(missing)}")
+                tasks, rest, types = batch.column(_TASKS), batch.select(columns), self._arrow.types
+                if not all(types.is_integer(t) or types.is_floating(t) for t in rest.schema.types):
+                    raise DecodeError(f"{path}: what counts episodes is no number")
+                for at, row in enumerate(rest.to_pylist()):
                     try:
-                        found = _episode(row, keys)
+                        found = _episode(row, keys, _first(tasks[at].values))
                     except self._errors as error:
                         raise DecodeError(f"{path}: an episode: {error!r:.200}") from error
                     number += 1
@@ -254,9 +262,9 @@ class LeRobotStorage:
         if column.null_count:
             raise DecodeError(f"{feature.name} is not in every row")
         if feature.kind == "string":
-            return column.to_pylist()
+            return column
         if feature.kind == "image":
-            return column.field("bytes").to_pylist()
+            return column.field("bytes")
         rows = len(column)
         while self._arrow.types.is_nested(column.type):
             column = column.flatten()
@@ -269,10 +277,16 @@ class LeRobotStorage:
         """Yield so many rows of a file at a time, behind those that are skipped. Raises
         DecodeError."""
         try:
-            with self._arrow.parquet.ParquetFile(path) as file:
+            if not path.is_file():  # opening a pipe would wait for whoever writes to it
+                raise DecodeError("there is no such file")
+            read = self._arrow.parquet.ParquetFile
+            with read(path) as file:
+                said, texts = file.metadata, _texts(file.schema)
+            # Texts stay what they are in the file: a long one may be told of a million rows.
+            with read(path, metadata=said, read_dictionary=texts) as file:
                 groups: list[int] = []
-                for number in range(file.metadata.num_row_groups):
-                    group = file.metadata.row_group(number)
+                for number in range(said.num_row_groups):
+                    group = said.row_group(number)
                     if group.total_byte_size > LEROBOT_ROW_GROUP:
                         raise DecodeError(f"{group.total_byte_size} bytes belong together")
                     if groups or skip < group.num_rows:
@@ -280,6 +294,7 @@ class LeRobotStorage:
                     else:
                         skip -= group.num_rows
                 for batch in file.iter_batches(rows, groups, columns) if groups else ():
+                    batch.validate(full=True)  # an index of a text leads out of the memory, else
                     left = min(skip, batch.num_rows)
                     skip -= left
                     yield batch.slice(left)
@@ -287,14 +302,31 @@ class LeRobotStorage:
             raise DecodeError(f"{path} cannot be read: {error}") from error
 
 
-def _episode(row: dict[str, Any], keys: Sequence[str]) -> Episode:
+def _texts(schema: Any) -> list[str]:
+    """Return the parts of a table that are texts or bytes. Raises DecodeError."""
+    leaves = [schema.column(number) for number in range(len(schema))]
+    for leaf in leaves:
+        if leaf.length > _LONGEST:
+            raise DecodeError(f"{leaf.path[:200]} has values of {leaf.length} bytes")
+    return [leaf.path for leaf in leaves if leaf.physical_type == "BYTE_ARRAY"]
+
+
+def _first(tasks: Any) -> str:
+    """Return what was to be done in an episode. Raises DecodeError."""
+    text = str(tasks[0].as_py() or "") if tasks else ""
+    if len(text) > RECORDED_TEXT:
+        raise DecodeError(f"a task of {len(text)} characters")
+    return sys.intern(text)  # the same one, of many episodes
+
+
+def _episode(row: dict[str, Any], keys: Sequence[str], task: str) -> Episode:
     """Return a row of `meta/episodes`. Raises KeyError, TypeError, ValueError."""
     videos = {}
     for key in keys:
         chunk, file, start = (row[f"videos/{key}/{word}"] for word in _VIDEO)
         videos[key] = int(chunk), int(file), float(start)
-    number, first, end, chunk, file = (int(row[word]) for word in _EPISODE[:-1])
-    return Episode(number, first, end, str((row["tasks"] or [""])[0]), (chunk, file), videos)
+    number, first, end, chunk, file = (int(row[word]) for word in _EPISODE)
+    return Episode(number, first, end, task, (chunk, file), videos)
 
 
 def _kind(feature: Feature) -> str:
@@ -305,7 +337,7 @@ def _kind(feature: Feature) -> str:
 def _value(feature: Feature, item: Any) -> Any:
     """Return what a port would have sent. Raises DecodeError."""
     if feature.kind == "string":
-        return Bottle([item])
+        return Bottle([item.as_py()])
     if feature.kind == "image":
-        return read_picture(item, feature.name, "")
+        return read_picture(item.as_py(), feature.name, "")
     return Matrix(item) if len(feature.shape) == 2 else Vector(item)
