@@ -4,7 +4,8 @@ from types import SimpleNamespace
 from typing import Any
 
 from yarpy.data.bottle import Bottle
-from yarpy.kits.devices.battery.functions import IBatteryMsgs, Info, Status
+from yarpy.kits.devices.battery.functions import IBatteryMsgs, Info
+from yarpy.kits.devices.declared import Status
 from yarpy.kits.devices.service import DeviceService
 
 

@@ -5,11 +5,12 @@ import pytest
 import yarpy
 from yarpy.data.bottle import Bottle
 from yarpy.data.value import Vocab
+from yarpy.kits.devices.declared import Status
 from yarpy.kits.devices.interfaces.audio import AudioPlayer
 from yarpy.kits.devices.interfaces.mobile_base import MobileBase
 from yarpy.kits.devices.interfaces.place import Place
 from yarpy.kits.devices.interfaces.speech import SpeechSynthesizer, SpeechTranscription
-from yarpy.kits.devices.network.functions import Status, functions_of
+from yarpy.kits.devices.network.functions import functions_of
 from yarpy.kits.devices.network.model import Interface, call
 from yarpy.kits.devices.status import oldest
 from yarpy.kits.thrift.kind import Nested

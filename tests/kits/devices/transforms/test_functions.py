@@ -1,12 +1,9 @@
-"""The interface of the store: what is written in Python is what the file says."""
+"""The functions of the store of frames: what is declared in Python is what the file says."""
 
-from pathlib import Path
+from support.declared import assert_as_the_file_says
 
 from yarpy.kits.devices.transforms import functions
-from yarpy.kits.thrift.interface import read_interface
-from yarpy.kits.thrift.module import python
 
 
-def test_the_module_is_written_from_the_file() -> None:
-    file = Path(functions.__file__).with_suffix(".thrift")
-    assert Path(functions.__file__).read_text(encoding="utf-8") == python(read_interface(file))
+def test_they_are_what_the_file_says() -> None:
+    assert_as_the_file_says(functions)

@@ -4,7 +4,6 @@ import threading
 
 import yarpy
 from yarpy import Bottle
-from yarpy.kits.launch.robot.functions import connect
 from yarpy.kits.launch.robot.robot import Robot
 from yarpy.kits.launch.robot.robot_file import load
 from yarpy.kits.launch.robot.rpc import Answers, port_name
@@ -40,7 +39,7 @@ def test_words_as_people_and_programs_say_them(write: Write, network: yarpy.Loca
         assert not over.is_set()
         assert said("quit") == "bye" and over.is_set()
         over.clear()
-        with connect(name, names=network) as typed:
+        with Answers.connect(name, names=network) as typed:
             assert typed.get_robot() == "r" and typed.exit() == "bye" and over.is_set()
     robot.stop()
 

@@ -1,36 +1,26 @@
-"""The interface functions, written by `yarpy idl thrift`."""
+"""The battery of YARP 3.12 and later: what `/robot/battery/rpc:i` is asked, and what
+`/robot/battery/data:o` sends.
+"""
 
-from yarpy.kits import thrift
-
-vocab = thrift.vocab
-
-
-class Status(thrift.Struct):
-    """The outcome of a call: ok, or err1 (failed) ... err7, miss."""
-
-    code: vocab = ""
+from yarpy.kits.devices.declared import Answer, function
+from yarpy.kits.thrift.kind import i32
+from yarpy.kits.thrift.service import Service
+from yarpy.kits.thrift.structure import Struct
 
 
-class BatteryData(thrift.Struct):
+class BatteryData(Struct):
     """Percent, V, A, degrees Celsius; the status has the numbers of `yarpy.devices.BATTERY`."""
 
     charge: float = 0.0
     voltage: float = 0.0
     current: float = 0.0
     temperature: float = 0.0
-    status: thrift.i32 = 3
+    status: i32 = 3
 
 
-class Info(thrift.Struct):
-    status: thrift.Nested[Status] = thrift.new(lambda: Status())
+class Info(Answer):
     text: str = ""
 
 
-class IBatteryMsgs(thrift.Service):
-    @thrift.method
-    def getBatteryInfoRPC(self) -> Info:
-        raise NotImplementedError
-
-
-connect = IBatteryMsgs.connect
-connect_async = IBatteryMsgs.connect_async
+class IBatteryMsgs(Service):
+    getBatteryInfoRPC = function(Info)

@@ -24,9 +24,10 @@ from yarpy.data.value import Vocab
 from yarpy.data.yarp4 import to_yarp4
 from yarpy.errors import DecodeError
 from yarpy.kits.devices.access import Access
-from yarpy.kits.devices.battery.functions import BatteryData, IBatteryMsgs, Info, Status
+from yarpy.kits.devices.battery.functions import BatteryData, IBatteryMsgs, Info
 from yarpy.kits.devices.battery.interface import BATTERY
 from yarpy.kits.devices.closeable import Closeable, prefix
+from yarpy.kits.devices.declared import Status
 from yarpy.kits.devices.kind import word
 from yarpy.kits.devices.publisher import Publisher
 from yarpy.kits.devices.refusal import Complaints, Refused

@@ -1,95 +1,54 @@
-"""The interface functions, written by `yarpy idl thrift`."""
+"""The laser scanner of YARP 3.10 and later: what `/robot/laser/rpc:i` is asked, and what
+`/robot/laser` sends. Angles are in degrees, distances in metres.
+"""
 
 from typing import Annotated
 
 import yarpy
-from yarpy.kits import thrift
+from yarpy.kits.devices.declared import Answer, Status, function
+from yarpy.kits.thrift.kind import External, i32, vocab
+from yarpy.kits.thrift.service import Service
+from yarpy.kits.thrift.structure import Struct, new
 
-vocab = thrift.vocab
-
-
-class Status(thrift.Struct):
-    """The outcome of a call: ok, or err1 (failed) ... err7, miss."""
-
-    code: vocab = ""
+Vector = Annotated[yarpy.Vector, External("yarp::sig::Vector", 1, "yarpy.Vector")]
 
 
-Vector = Annotated[yarpy.Vector, thrift.External("yarp::sig::Vector", 1, "yarpy.Vector")]
-
-
-class LaserScan2D(thrift.Struct):
+class LaserScan2D(Struct):
     """The first of the ranges belongs to the first angle; what hit nothing is infinite."""
 
     angle_min: float = 0.0
     angle_max: float = 0.0
     range_min: float = 0.0
     range_max: float = 0.0
-    scans: Vector = thrift.new(yarpy.Vector)
-    status: thrift.i32 = 3
+    scans: Vector = new(yarpy.Vector)
+    status: i32 = 3
 
 
-class Condition(thrift.Struct):
-    status: thrift.Nested[Status] = thrift.new(lambda: Status())
+class Condition(Answer):
     condition: vocab = ""
 
 
-class Limits(thrift.Struct):
-    status: thrift.Nested[Status] = thrift.new(lambda: Status())
+class Limits(Answer):
     low: float = 0.0
     high: float = 0.0
 
 
-class Number(thrift.Struct):
-    status: thrift.Nested[Status] = thrift.new(lambda: Status())
+class Number(Answer):
     value: float = 0.0
 
 
-class Info(thrift.Struct):
-    status: thrift.Nested[Status] = thrift.new(lambda: Status())
+class Info(Answer):
     text: str = ""
 
 
-class IRangefinder2DMsgs(thrift.Service):
-    @thrift.method
-    def getDeviceStatus_RPC(self) -> Condition:
-        raise NotImplementedError
-
-    @thrift.method
-    def getDistanceRange_RPC(self) -> Limits:
-        raise NotImplementedError
-
-    @thrift.method
-    def getScanLimits_RPC(self) -> Limits:
-        raise NotImplementedError
-
-    @thrift.method
-    def getHorizontalResolution_RPC(self) -> Number:
-        raise NotImplementedError
-
-    @thrift.method
-    def getScanRate_RPC(self) -> Number:
-        raise NotImplementedError
-
-    @thrift.method
-    def getDeviceInfo_RPC(self) -> Info:
-        raise NotImplementedError
-
-    @thrift.method
-    def setDistanceRange_RPC(self, low: float, high: float) -> Status:
-        raise NotImplementedError
-
-    @thrift.method
-    def setScanLimits_RPC(self, low: float, high: float) -> Status:
-        raise NotImplementedError
-
-    @thrift.method
-    def setHorizontalResolution_RPC(self, step: float) -> Status:
-        raise NotImplementedError
-
-    @thrift.method
-    def setScanRate_RPC(self, rate: float) -> Status:
-        raise NotImplementedError
-
-
-connect = IRangefinder2DMsgs.connect
-connect_async = IRangefinder2DMsgs.connect_async
+class IRangefinder2DMsgs(Service):
+    getDeviceStatus_RPC = function(Condition)
+    getDistanceRange_RPC = function(Limits)
+    getScanLimits_RPC = function(Limits)
+    getHorizontalResolution_RPC = function(Number)
+    getScanRate_RPC = function(Number)
+    getDeviceInfo_RPC = function(Info)
+    setDistanceRange_RPC = function(Status, low=float, high=float)
+    setScanLimits_RPC = function(Status, low=float, high=float)
+    setHorizontalResolution_RPC = function(Status, step=float)
+    setScanRate_RPC = function(Status, rate=float)

@@ -25,6 +25,7 @@ from yarpy.data.yarp4 import to_yarp4
 from yarpy.errors import DecodeError
 from yarpy.kits.devices.access import Access
 from yarpy.kits.devices.closeable import Closeable, prefix
+from yarpy.kits.devices.declared import Status
 from yarpy.kits.devices.kind import number, word
 from yarpy.kits.devices.laser.functions import (
     Condition,
@@ -33,7 +34,6 @@ from yarpy.kits.devices.laser.functions import (
     LaserScan2D,
     Limits,
     Number,
-    Status,
 )
 from yarpy.kits.devices.laser.interface import CONDITIONS
 from yarpy.kits.devices.publisher import Publisher

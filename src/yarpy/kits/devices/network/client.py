@@ -15,8 +15,9 @@ from typing import Any, ClassVar, Final
 from yarpy.data.bottle import Bottle
 from yarpy.errors import LocalProtocolError, RemoteError, RemoteProtocolError
 from yarpy.kits.devices.closeable import local_prefix, prefix
+from yarpy.kits.devices.declared import Status
 from yarpy.kits.devices.latest_message import LatestMessage
-from yarpy.kits.devices.network.functions import Status, functions_of
+from yarpy.kits.devices.network.functions import functions_of
 from yarpy.kits.devices.network.model import Interface, Member
 from yarpy.kits.devices.network.words import question, results
 from yarpy.kits.devices.status import OK, reason

@@ -15,10 +15,11 @@ from typing import Any, ClassVar, Final
 
 from yarpy.data.value import Buffer
 from yarpy.data.walker import Walker
+from yarpy.kits.devices.declared import Status
 from yarpy.kits.devices.network.model import Interface, Member, Oldest
 from yarpy.kits.devices.service import DeviceService
 from yarpy.kits.devices.status import newest
-from yarpy.kits.thrift.kind import Nested, vocab
+from yarpy.kits.thrift.kind import Nested
 from yarpy.kits.thrift.method import Method, method
 from yarpy.kits.thrift.structure import Struct, new
 
@@ -26,12 +27,6 @@ from yarpy.kits.thrift.structure import Struct, new
 _NUMBER: Final = b"\1\0\0\0"
 
 _KNOWN: Final[dict[type[Interface], type[Functions]]] = {}
-
-
-class Status(Struct):
-    """The outcome of a call: ok, or err1 (failed) ... err7, miss."""
-
-    code: vocab = ""
 
 
 class Functions(DeviceService):

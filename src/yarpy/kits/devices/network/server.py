@@ -23,7 +23,8 @@ from yarpy.data.yarp4 import to_yarp4
 from yarpy.errors import DecodeError
 from yarpy.kits.devices.access import Access
 from yarpy.kits.devices.closeable import Closeable, prefix
-from yarpy.kits.devices.network.functions import Status, functions_of
+from yarpy.kits.devices.declared import Status
+from yarpy.kits.devices.network.functions import functions_of
 from yarpy.kits.devices.network.model import Interface, Member
 from yarpy.kits.devices.network.words import answer, arguments, asked, fixed
 from yarpy.kits.devices.publisher import Publisher

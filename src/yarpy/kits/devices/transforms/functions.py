@@ -1,23 +1,20 @@
-"""The interface functions, written by `yarpy idl thrift`."""
+"""The store of frames and where they are: what the ports `thrift` of frameTransformSet_nws_yarp and
+frameTransformGet_nws_yarp are asked.
+"""
 
-from yarpy.kits import thrift
-
-vocab = thrift.vocab
-
-
-class Status(thrift.Struct):
-    """The outcome of a call: ok, or err1 (failed) ... err7, miss."""
-
-    code: vocab = ""
+from yarpy.kits.devices.declared import Answer, Status, function
+from yarpy.kits.thrift.kind import Nested, i8
+from yarpy.kits.thrift.service import Service
+from yarpy.kits.thrift.structure import Struct, new
 
 
-class Transform(thrift.Struct):
+class Transform(Struct):
     """Where the frame `target` is, seen from `source`: metres, and a quaternion."""
 
     source: str = ""
     target: str = ""
     time: float = 0.0
-    constant: thrift.i8 = 0
+    constant: i8 = 0
     x: float = 0.0
     y: float = 0.0
     z: float = 0.0
@@ -27,30 +24,16 @@ class Transform(thrift.Struct):
     qw: float = 1.0
 
 
-class Transforms(thrift.Struct):
-    status: thrift.Nested[Status] = thrift.new(lambda: Status())
-    transforms: list[Transform] = thrift.new(list)
+class Transforms(Answer):
+    transforms: list[Transform] = new(list)
 
 
-class FrameTransformStorageSetRPC(thrift.Service):
-    @thrift.method
-    def setTransformsRPC(self, transforms: list[Transform]) -> Status:
-        raise NotImplementedError
-
-    @thrift.method
-    def setTransformRPC(self, transform: thrift.Nested[Transform]) -> Status:
-        raise NotImplementedError
-
-    @thrift.method
-    def deleteTransformRPC(self, source: str, target: str) -> Status:
-        raise NotImplementedError
-
-    @thrift.method
-    def clearAllRPC(self) -> Status:
-        raise NotImplementedError
+class FrameTransformStorageSetRPC(Service):
+    setTransformsRPC = function(Status, transforms=list[Transform])
+    setTransformRPC = function(Status, transform=Nested[Transform])
+    deleteTransformRPC = function(Status, source=str, target=str)
+    clearAllRPC = function(Status)
 
 
-class FrameTransformStorageGetRPC(thrift.Service):
-    @thrift.method
-    def getTransformsRPC(self) -> Transforms:
-        raise NotImplementedError
+class FrameTransformStorageGetRPC(Service):
+    getTransformsRPC = function(Transforms)

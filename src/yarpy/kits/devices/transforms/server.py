@@ -20,13 +20,13 @@ from typing import Any, Final
 from yarpy.data.value import LIST, VOCAB32
 from yarpy.data.yarp4 import to_yarp4
 from yarpy.kits.devices.closeable import Closeable, prefix
+from yarpy.kits.devices.declared import Status
 from yarpy.kits.devices.publisher import Publisher
 from yarpy.kits.devices.status import FAILED, OK
 from yarpy.kits.devices.transforms.frames import Frames
 from yarpy.kits.devices.transforms.functions import (
     FrameTransformStorageGetRPC,
     FrameTransformStorageSetRPC,
-    Status,
     Transform,
     Transforms,
 )

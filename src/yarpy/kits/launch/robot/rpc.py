@@ -1,36 +1,42 @@
-"""The answers of a running robot, on `PREFIX/yarprobotinterface`."""
+"""The answers of a running robot, on `PREFIX/yarprobotinterface`: the words of C++ YARP, and two
+more."""
 
 from __future__ import annotations
 
 import threading
 
-from yarpy.kits.launch.robot.functions import RobotInterface
 from yarpy.kits.launch.robot.robot import Robot
+from yarpy.kits.thrift import Service, i32, method
 
 
-class Answers(RobotInterface):
+class Answers(Service):
     """Answers for a robot; `over` is set by whoever asks it to end."""
 
     def __init__(self, robot: Robot, over: threading.Event) -> None:
         self._robot = robot
         self._over = over
 
+    @method
     def get_phase(self) -> str:
-        """Return the phase."""
+        """Return the phase: startup, run, interrupt1, interrupt2, interrupt3 or shutdown."""
         return self._robot.phase
 
-    def get_level(self) -> int:
-        """Return the level of the phase."""
+    @method
+    def get_level(self) -> i32:
+        """Return the level of the phase, from 0 on."""
         return self._robot.level
 
+    @method
     def get_robot(self) -> str:
         """Return the name of the robot."""
         return self._robot.description.name
 
+    @method
     def is_ready(self) -> bool:
-        """Return whether it runs."""
+        """Return whether the robot has started and runs."""
         return self._robot.ready
 
+    @method
     def quit(self) -> str:
         """End the robot."""
         self._over.set()
@@ -38,15 +44,17 @@ class Answers(RobotInterface):
 
     bye = exit = quit
 
+    @method
     def get_devices(self) -> list[str]:
-        """Return a line for each device."""
+        """(yarpy) Return a line for each device: its name, its state, the reason of that."""
         return [
             f"{name} {slot.state} {slot.detail}".rstrip()
             for name, slot in self._robot.slots.items()
         ]
 
+    @method
     def retry(self, device: str) -> bool:
-        """Open a device that has failed. Raises UnknownName."""
+        """(yarpy) Open a device that has failed, and do what could not be done without it."""
         return self._robot.retry(device)
 
 

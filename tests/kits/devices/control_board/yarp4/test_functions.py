@@ -1,16 +1,12 @@
-"""The interface of YARP 4's control board: what is written in Python is what the file says."""
+"""The interface of YARP 4's control board: what is declared in Python is what the file says."""
 
-from pathlib import Path
+from support.declared import assert_as_the_file_says
 
 from yarpy.kits.devices.control_board.yarp4 import functions
-from yarpy.kits.thrift.interface import read_interface
-from yarpy.kits.thrift.module import python
-
-FILE = Path(functions.__file__).with_suffix(".thrift")
 
 
-def test_the_module_is_written_from_the_file() -> None:
-    assert Path(functions.__file__).read_text(encoding="utf-8") == python(read_interface(FILE))
+def test_they_are_what_the_file_says() -> None:
+    assert_as_the_file_says(functions)
 
 
 def test_names_are_sent_as_they_are() -> None:

@@ -17,8 +17,9 @@ from yarpy.errors import LocalProtocolError, RemoteProtocolError, Timeout
 from yarpy.kits.devices.closeable import Closeable
 from yarpy.kits.devices.control_board.grammar import Form
 from yarpy.kits.devices.control_board.yarp4 import table
-from yarpy.kits.devices.control_board.yarp4.functions import ControlBoardMsgs, Status
+from yarpy.kits.devices.control_board.yarp4.functions import ControlBoardMsgs
 from yarpy.kits.devices.control_board.yarp4.table import Row
+from yarpy.kits.devices.declared import Status
 from yarpy.kits.devices.refusal import Refused
 from yarpy.kits.devices.status import reason
 from yarpy.names.base import NameClient

@@ -22,8 +22,9 @@ from yarpy.kits.devices.control_board.board import TARGETS, Board
 from yarpy.kits.devices.control_board.grammar import Form
 from yarpy.kits.devices.control_board.interface import Gains
 from yarpy.kits.devices.control_board.yarp4 import table
-from yarpy.kits.devices.control_board.yarp4.functions import ControlBoardMsgs, Status
+from yarpy.kits.devices.control_board.yarp4.functions import ControlBoardMsgs
 from yarpy.kits.devices.control_board.yarp4.table import Row
+from yarpy.kits.devices.declared import Status
 from yarpy.kits.devices.kind import FLOAT, number
 from yarpy.kits.devices.refusal import Refused
 from yarpy.kits.devices.status import FAILED, MISSING, OK

@@ -1,328 +1,152 @@
-"""The interface functions, written by `yarpy idl thrift`."""
+"""The camera of YARP 4: what `/robot/eye/rpc` is asked, and the port of the images.
+
+Every answer begins with a Status. Features have the numbers of `yarpy.devices.FEATURES`; angles
+are in degrees, sizes in pixels. Functions with DC1394 are about cameras at FireWire.
+"""
 
 from typing import Annotated
 
 import yarpy
-from yarpy.kits import thrift
-
-vocab = thrift.vocab
-
-
-class Status(thrift.Struct):
-    """The outcome of a call: ok, or err1 (failed) ... err7, miss."""
-
-    code: vocab = ""
+from yarpy.kits.devices.declared import Answer, Status, function
+from yarpy.kits.thrift.kind import External, i32
+from yarpy.kits.thrift.service import Service
+from yarpy.kits.thrift.structure import Struct, new
 
 
-class Corner(thrift.Struct):
+class Corner(Struct):
     """A corner of a part of an image."""
 
-    x: thrift.i32 = 0
-    y: thrift.i32 = 0
+    x: i32 = 0
+    y: i32 = 0
 
 
-class Configuration(thrift.Struct):
+class Configuration(Struct):
     """A way to take images; the code is that of the pixels, a vocab that travels as a number."""
 
-    width: thrift.i32 = 0
-    height: thrift.i32 = 0
+    width: i32 = 0
+    height: i32 = 0
     rate: float = 0.0
-    code: thrift.i32 = 0
+    code: i32 = 0
 
 
-Image = Annotated[object, thrift.External("yarp::sig::FlexImage")]
-Property = Annotated[yarpy.Property, thrift.External("yarp::os::Property", 1, "yarpy.Property")]
+Image = Annotated[object, External("yarp::sig::FlexImage")]
+Property = Annotated[yarpy.Property, External("yarp::os::Property", 1, "yarpy.Property")]
 
 
-class Picture(thrift.Struct):
-    status: thrift.Nested[Status] = thrift.new(lambda: Status())
-    image: Image = thrift.new(yarpy.Bottle)
+class Picture(Answer):
+    image: Image = new(yarpy.Bottle)
 
 
-class Number(thrift.Struct):
-    status: thrift.Nested[Status] = thrift.new(lambda: Status())
+class Number(Answer):
     value: float = 0.0
 
 
-class Pair(thrift.Struct):
-    status: thrift.Nested[Status] = thrift.new(lambda: Status())
+class Pair(Answer):
     first: float = 0.0
     second: float = 0.0
 
 
-class Size(thrift.Struct):
-    status: thrift.Nested[Status] = thrift.new(lambda: Status())
-    width: thrift.i32 = 0
-    height: thrift.i32 = 0
+class Size(Answer):
+    width: i32 = 0
+    height: i32 = 0
 
 
-class Count(thrift.Struct):
-    status: thrift.Nested[Status] = thrift.new(lambda: Status())
-    value: thrift.i32 = 0
+class Count(Answer):
+    value: i32 = 0
 
 
-class Truth(thrift.Struct):
-    status: thrift.Nested[Status] = thrift.new(lambda: Status())
+class Truth(Answer):
     value: bool = False
 
 
-class Configurations(thrift.Struct):
-    status: thrift.Nested[Status] = thrift.new(lambda: Status())
-    configurations: list[Configuration] = thrift.new(list)
+class Configurations(Answer):
+    configurations: list[Configuration] = new(list)
 
 
-class Parameters(thrift.Struct):
-    status: thrift.Nested[Status] = thrift.new(lambda: Status())
-    parameters: Property = thrift.new(yarpy.Property)
+class Parameters(Answer):
+    parameters: Property = new(yarpy.Property)
 
 
-class Description(thrift.Struct):
-    status: thrift.Nested[Status] = thrift.new(lambda: Status())
-    bus: thrift.i32 = 0
+class Description(Answer):
+    bus: i32 = 0
     text: str = ""
 
 
-class Window(thrift.Struct):
-    status: thrift.Nested[Status] = thrift.new(lambda: Status())
-    width: thrift.i32 = 0
-    height: thrift.i32 = 0
-    x: thrift.i32 = 0
-    y: thrift.i32 = 0
+class Window(Answer):
+    width: i32 = 0
+    height: i32 = 0
+    x: i32 = 0
+    y: i32 = 0
 
 
-class LargestWindow(thrift.Struct):
-    status: thrift.Nested[Status] = thrift.new(lambda: Status())
-    width: thrift.i32 = 0
-    height: thrift.i32 = 0
-    x_step: thrift.i32 = 0
-    y_step: thrift.i32 = 0
-    x_offset_step: thrift.i32 = 0
-    y_offset_step: thrift.i32 = 0
+class LargestWindow(Answer):
+    width: i32 = 0
+    height: i32 = 0
+    x_step: i32 = 0
+    y_step: i32 = 0
+    x_offset_step: i32 = 0
+    y_offset_step: i32 = 0
 
 
-class FrameGrabberMsgs(thrift.Service):
-    @thrift.method
-    def getHeightRPC(self) -> Count:
-        raise NotImplementedError
+class FrameGrabberMsgs(Service):
+    # images
+    getHeightRPC = function(Count)
+    getWidthRPC = function(Count)
+    getImageRPC = function(Picture)
+    getImageCropRPC = function(Picture, kind=i32, corners=list[Corner])
 
-    @thrift.method
-    def getWidthRPC(self) -> Count:
-        raise NotImplementedError
+    # the lens
+    getRgbWidthRPC = function(Count)
+    getRgbHeightRPC = function(Count)
+    getRgbSupportedConfigurationsRPC = function(Configurations)
+    getRgbResolutionRPC = function(Size)
+    setRgbResolutionRPC = function(Status, width=i32, height=i32)
+    getRgbFOVRPC = function(Pair)
+    setRgbFOVRPC = function(Status, horizontal=float, vertical=float)
+    getRgbIntrinsicParamRPC = function(Parameters)
+    getRgbMirroringRPC = function(Truth)
+    setRgbMirroringRPC = function(Status, mirror=bool)
 
-    @thrift.method
-    def getImageRPC(self) -> Picture:
-        raise NotImplementedError
+    # features
+    getCameraDescriptionRPC = function(Description)
+    hasFeatureRPC = function(Truth, feature=i32)
+    setFeature1RPC = function(Status, feature=i32, value=float)
+    getFeature1RPC = function(Number, feature=i32)
+    setFeature2RPC = function(Status, feature=i32, first=float, second=float)
+    getFeature2RPC = function(Pair, feature=i32)
+    hasOnOffRPC = function(Truth, feature=i32)
+    setActiveRPC = function(Status, feature=i32, on=bool)
+    getActiveRPC = function(Truth, feature=i32)
+    hasAutoRPC = function(Truth, feature=i32)
+    hasManualRPC = function(Truth, feature=i32)
+    hasOnePushRPC = function(Truth, feature=i32)
+    setModeRPC = function(Status, feature=i32, mode=i32)
+    getModeRPC = function(Count, feature=i32)
+    setOnePushRPC = function(Status, feature=i32)
 
-    @thrift.method
-    def getImageCropRPC(self, kind: thrift.i32, corners: list[Corner]) -> Picture:
-        raise NotImplementedError
-
-    @thrift.method
-    def getRgbWidthRPC(self) -> Count:
-        raise NotImplementedError
-
-    @thrift.method
-    def getRgbHeightRPC(self) -> Count:
-        raise NotImplementedError
-
-    @thrift.method
-    def getRgbSupportedConfigurationsRPC(self) -> Configurations:
-        raise NotImplementedError
-
-    @thrift.method
-    def getRgbResolutionRPC(self) -> Size:
-        raise NotImplementedError
-
-    @thrift.method
-    def setRgbResolutionRPC(self, width: thrift.i32, height: thrift.i32) -> Status:
-        raise NotImplementedError
-
-    @thrift.method
-    def getRgbFOVRPC(self) -> Pair:
-        raise NotImplementedError
-
-    @thrift.method
-    def setRgbFOVRPC(self, horizontal: float, vertical: float) -> Status:
-        raise NotImplementedError
-
-    @thrift.method
-    def getRgbIntrinsicParamRPC(self) -> Parameters:
-        raise NotImplementedError
-
-    @thrift.method
-    def getRgbMirroringRPC(self) -> Truth:
-        raise NotImplementedError
-
-    @thrift.method
-    def setRgbMirroringRPC(self, mirror: bool) -> Status:
-        raise NotImplementedError
-
-    @thrift.method
-    def getCameraDescriptionRPC(self) -> Description:
-        raise NotImplementedError
-
-    @thrift.method
-    def hasFeatureRPC(self, feature: thrift.i32) -> Truth:
-        raise NotImplementedError
-
-    @thrift.method
-    def setFeature1RPC(self, feature: thrift.i32, value: float) -> Status:
-        raise NotImplementedError
-
-    @thrift.method
-    def getFeature1RPC(self, feature: thrift.i32) -> Number:
-        raise NotImplementedError
-
-    @thrift.method
-    def setFeature2RPC(self, feature: thrift.i32, first: float, second: float) -> Status:
-        raise NotImplementedError
-
-    @thrift.method
-    def getFeature2RPC(self, feature: thrift.i32) -> Pair:
-        raise NotImplementedError
-
-    @thrift.method
-    def hasOnOffRPC(self, feature: thrift.i32) -> Truth:
-        raise NotImplementedError
-
-    @thrift.method
-    def setActiveRPC(self, feature: thrift.i32, on: bool) -> Status:
-        raise NotImplementedError
-
-    @thrift.method
-    def getActiveRPC(self, feature: thrift.i32) -> Truth:
-        raise NotImplementedError
-
-    @thrift.method
-    def hasAutoRPC(self, feature: thrift.i32) -> Truth:
-        raise NotImplementedError
-
-    @thrift.method
-    def hasManualRPC(self, feature: thrift.i32) -> Truth:
-        raise NotImplementedError
-
-    @thrift.method
-    def hasOnePushRPC(self, feature: thrift.i32) -> Truth:
-        raise NotImplementedError
-
-    @thrift.method
-    def setModeRPC(self, feature: thrift.i32, mode: thrift.i32) -> Status:
-        raise NotImplementedError
-
-    @thrift.method
-    def getModeRPC(self, feature: thrift.i32) -> Count:
-        raise NotImplementedError
-
-    @thrift.method
-    def setOnePushRPC(self, feature: thrift.i32) -> Status:
-        raise NotImplementedError
-
-    @thrift.method
-    def getVideoModeMaskDC1394RPC(self) -> Count:
-        raise NotImplementedError
-
-    @thrift.method
-    def getVideoModeDC1394RPC(self) -> Count:
-        raise NotImplementedError
-
-    @thrift.method
-    def setVideoModeDC1394RPC(self, value: thrift.i32) -> Status:
-        raise NotImplementedError
-
-    @thrift.method
-    def getFPSMaskDC1394RPC(self) -> Count:
-        raise NotImplementedError
-
-    @thrift.method
-    def getFPSDC1394RPC(self) -> Count:
-        raise NotImplementedError
-
-    @thrift.method
-    def setFPSDC1394RPC(self, value: thrift.i32) -> Status:
-        raise NotImplementedError
-
-    @thrift.method
-    def getISOSpeedDC1394RPC(self) -> Count:
-        raise NotImplementedError
-
-    @thrift.method
-    def setISOSpeedDC1394RPC(self, value: thrift.i32) -> Status:
-        raise NotImplementedError
-
-    @thrift.method
-    def getColorCodingMaskDC1394RPC(self, video_mode: thrift.i32) -> Count:
-        raise NotImplementedError
-
-    @thrift.method
-    def getColorCodingDC1394RPC(self) -> Count:
-        raise NotImplementedError
-
-    @thrift.method
-    def setColorCodingDC1394RPC(self, value: thrift.i32) -> Status:
-        raise NotImplementedError
-
-    @thrift.method
-    def getFormat7MaxWindowDC1394RPC(self) -> LargestWindow:
-        raise NotImplementedError
-
-    @thrift.method
-    def getFormat7WindowDC1394RPC(self) -> Window:
-        raise NotImplementedError
-
-    @thrift.method
-    def setFormat7WindowDC1394RPC(
-        self,
-        width: thrift.i32,
-        height: thrift.i32,
-        x: thrift.i32,
-        y: thrift.i32,
-    ) -> Status:
-        raise NotImplementedError
-
-    @thrift.method
-    def setOperationModeDC1394RPC(self, value: bool) -> Status:
-        raise NotImplementedError
-
-    @thrift.method
-    def getOperationModeDC1394RPC(self) -> Truth:
-        raise NotImplementedError
-
-    @thrift.method
-    def setTransmissionDC1394RPC(self, on: bool) -> Status:
-        raise NotImplementedError
-
-    @thrift.method
-    def getTransmissionDC1394RPC(self) -> Truth:
-        raise NotImplementedError
-
-    @thrift.method
-    def setBroadcastDC1394RPC(self, on: bool) -> Status:
-        raise NotImplementedError
-
-    @thrift.method
-    def setDefaultsDC1394RPC(self) -> Status:
-        raise NotImplementedError
-
-    @thrift.method
-    def setResetDC1394RPC(self) -> Status:
-        raise NotImplementedError
-
-    @thrift.method
-    def setPowerDC1394RPC(self, on: bool) -> Status:
-        raise NotImplementedError
-
-    @thrift.method
-    def setCaptureDC1394RPC(self, on: bool) -> Status:
-        raise NotImplementedError
-
-    @thrift.method
-    def getBytesPerPacketDC1394RPC(self) -> Count:
-        raise NotImplementedError
-
-    @thrift.method
-    def setBytesPerPacketDC1394RPC(self, value: thrift.i32) -> Status:
-        raise NotImplementedError
-
-
-connect = FrameGrabberMsgs.connect
-connect_async = FrameGrabberMsgs.connect_async
+    # FireWire
+    getVideoModeMaskDC1394RPC = function(Count)
+    getVideoModeDC1394RPC = function(Count)
+    setVideoModeDC1394RPC = function(Status, value=i32)
+    getFPSMaskDC1394RPC = function(Count)
+    getFPSDC1394RPC = function(Count)
+    setFPSDC1394RPC = function(Status, value=i32)
+    getISOSpeedDC1394RPC = function(Count)
+    setISOSpeedDC1394RPC = function(Status, value=i32)
+    getColorCodingMaskDC1394RPC = function(Count, video_mode=i32)
+    getColorCodingDC1394RPC = function(Count)
+    setColorCodingDC1394RPC = function(Status, value=i32)
+    getFormat7MaxWindowDC1394RPC = function(LargestWindow)
+    getFormat7WindowDC1394RPC = function(Window)
+    setFormat7WindowDC1394RPC = function(Status, width=i32, height=i32, x=i32, y=i32)
+    setOperationModeDC1394RPC = function(Status, value=bool)
+    getOperationModeDC1394RPC = function(Truth)
+    setTransmissionDC1394RPC = function(Status, on=bool)
+    getTransmissionDC1394RPC = function(Truth)
+    setBroadcastDC1394RPC = function(Status, on=bool)
+    setDefaultsDC1394RPC = function(Status)
+    setResetDC1394RPC = function(Status)
+    setPowerDC1394RPC = function(Status, on=bool)
+    setCaptureDC1394RPC = function(Status, on=bool)
+    getBytesPerPacketDC1394RPC = function(Count)
+    setBytesPerPacketDC1394RPC = function(Status, value=i32)

@@ -12,9 +12,10 @@ from typing import Any
 from yarpy.data.bottle import Bottle
 from yarpy.data.value import Vocab
 from yarpy.errors import LocalProtocolError
+from yarpy.kits.devices.declared import Status
 from yarpy.kits.devices.frame_grabber.firewire import BY_WORD
 from yarpy.kits.devices.frame_grabber.firewire import FUNCTIONS as FIREWIRE
-from yarpy.kits.devices.frame_grabber.yarp4.functions import FrameGrabberMsgs, Status
+from yarpy.kits.devices.frame_grabber.yarp4.functions import FrameGrabberMsgs
 from yarpy.kits.devices.frame_grabber.yarp4.table import BY_WORDS, FUNCTIONS
 from yarpy.kits.devices.status import reason
 from yarpy.kits.thrift.client import client_class

@@ -15,8 +15,9 @@ from typing import Any, ClassVar
 
 from yarpy.data.sig.image import Image
 from yarpy.data.value import Vocab
+from yarpy.kits.devices.declared import Status
 from yarpy.kits.devices.frame_grabber.responder import FrameGrabberResponder
-from yarpy.kits.devices.frame_grabber.yarp4.functions import FrameGrabberMsgs, Picture, Status
+from yarpy.kits.devices.frame_grabber.yarp4.functions import FrameGrabberMsgs, Picture
 from yarpy.kits.devices.frame_grabber.yarp4.table import FUNCTIONS, Row
 from yarpy.kits.devices.refusal import Refused
 from yarpy.log import logger
