@@ -1,5 +1,8 @@
 """`yarpy convert`; tests/kits/record/test_convert.py has what it writes."""
 
+import errno
+import os
+
 import pytest
 from support.recordings import START, STEP, payload_of, recorded
 
@@ -65,3 +68,13 @@ def test_what_is_no_data_set(words, said, here, tmp_path) -> None:
     path = str(recorded(tmp_path / "x.mcap"))
     done = here("convert", path, "-o", str(tmp_path / "set"), "--format", "lerobot", *words)
     assert done.code == 1 and said in done.err
+
+
+def test_a_full_disk_is_told_with_the_name(here, tmp_path, monkeypatch) -> None:
+    def add(*_: object) -> None:
+        raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC))
+
+    path = recorded(tmp_path / "x.mcap")
+    monkeypatch.setattr(McapWriter, "add", add)
+    said = here("convert", str(path), "-o", str(tmp_path / "y"))
+    assert (said.code, said.err) == (1, f"error: {os.strerror(errno.ENOSPC)}: {tmp_path / 'y'}\n")

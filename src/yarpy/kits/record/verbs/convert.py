@@ -141,6 +141,9 @@ def write_part(
         except FileExistsError as error:
             complain(f"{error.filename} is there already: choose another name with -o")
             return 1
+        except OSError as error:
+            error.filename = error.filename or path  # a full disk has no name
+            raise
         damages = recording.damages
     for damage in damages:
         warn(damage)
