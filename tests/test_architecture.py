@@ -52,6 +52,7 @@ LAYERS: list[set[str]] = [
 BESIDE = {
     ("registry", "threads"),
     ("threads", "scope"),
+    ("linger", "errors"),
     ("linger", "fork"),
     ("linger", "log"),
     ("linger", "platform"),

@@ -25,6 +25,7 @@ from types import FrameType
 from typing import Final
 
 from yarpy import fork
+from yarpy.errors import PortClosed
 from yarpy.log import logger
 from yarpy.platform import console
 
@@ -88,6 +89,7 @@ def at_last(action: Callable[[], object]) -> None:
 def end() -> None:
     """Close all that is open, the last first, in `seconds()` seconds."""
     global _until
+    threading.excepthook = _daemons_end_quietly(threading.excepthook)
     left = seconds()
     limit = time.monotonic() + left
     _until = limit + NAMES
@@ -98,6 +100,21 @@ def end() -> None:
             close(left if not _open else left / 2)
         except Exception:
             log.exception("%s could not be closed at the end of the program", thing)
+
+
+def _daemons_end_quietly(
+    told: Callable[[threading.ExceptHookArgs], object],
+) -> Callable[[threading.ExceptHookArgs], object]:
+    """Return a hook for exceptions of threads that passes over a closed port in a daemon thread:
+    the end of the program has closed it, and Python, too, cuts such threads without a word. One
+    that prints at that moment may bring the interpreter down."""
+
+    def hook(raised: threading.ExceptHookArgs) -> None:
+        daemon = raised.thread is not None and raised.thread.daemon
+        if not (daemon and issubclass(raised.exc_type, PortClosed)):
+            told(raised)
+
+    return hook
 
 
 def left_for_names() -> float:

@@ -221,3 +221,26 @@ def test_a_killed_program_leaves_what_it_leaves(server: yarpy.NameServer) -> Non
     program = "import os, signal\nimport yarpy\nport = yarpy.Port('/life/killed', timeout=60)\n"
     done = run(server, program + "os.kill(os.getpid(), signal.SIGKILL)\n")
     assert done.returncode == -signal.SIGKILL
+
+
+def test_daemon_threads_end_without_a_word() -> None:
+    """A word of theirs may bring down an interpreter that ends."""
+    done = run_alone(
+        """
+import threading, yarpy
+names = yarpy.LocalNames()
+port, other = (yarpy.BufferedPort(name, names=names) for name in ("/in", "/out"))
+
+def until(call, *words):
+    while True:
+        call(*words)
+
+threading.Thread(target=until, args=(port.read,), daemon=True).start()
+threading.Thread(target=until, args=(other.write, [1]), daemon=True).start()
+fails = threading.Thread(target=until, args=(port.connect, 1), daemon=True)
+fails.start()
+fails.join()
+"""
+    )
+    assert done.returncode == 0
+    assert done.stderr.count("Traceback") == 1, done.stderr
