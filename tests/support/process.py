@@ -10,6 +10,7 @@ import atexit
 import contextlib
 import os
 import re
+import select
 import signal
 import subprocess
 import sys
@@ -134,9 +135,23 @@ class Process:
         with self._changed:
             # A grandchild may hold the pipes open: what it says later is not waited for.
             while self._open_streams and (left := min(deadline - time.monotonic(), 1.0)) > 0:
-                if not self._changed.wait(left):
+                if not (self._changed.wait(left) or self._has_more()):
                     break
         return code
+
+    def _has_more(self) -> bool:
+        """Return whether output, or its end, waits to be read."""
+        if sys.platform == "win32":
+            return False
+        waiting = select.poll()
+        try:
+            for pipe in (self._popen.stdout, self._popen.stderr):
+                assert pipe is not None
+                if not pipe.closed:
+                    waiting.register(pipe, select.POLLIN)
+        except ValueError:  # closed just now
+            return True
+        return bool(waiting.poll(0))
 
     def signal(self, number: int) -> None:
         """Send a signal to the program alone."""
