@@ -49,6 +49,11 @@ def _encode(packet: Packet, kind: type[Ros], now: Callable[[], float] | None) ->
     if type(value) is kind and not packet.envelope:
         blocks: tuple[Buffer, ...] = value.to_ros()
         return blocks
+    if type(value) is str:  # as `to_message`, without the steps to it
+        try:
+            return _stamped(kind.from_bottle(value).to_ros(), kind, packet.envelope, now)
+        except UNSENDABLE as error:
+            raise type(error)(f"{kind._type} is expected here: {error}") from None
     from yarpy.peers.ros.message.message import Message as Ros
     from yarpy.peers.ros.message.native import to_message, to_value
 
