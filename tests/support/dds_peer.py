@@ -17,6 +17,7 @@ Each is answered by ["done", ...]; what is read is ["heard", ID, TEXT]. A depth 
 """
 
 import json
+import os
 import sys
 import threading
 from dataclasses import dataclass
@@ -86,7 +87,7 @@ def events_of(item: Any) -> dict[str, int]:
 
 
 def obey() -> None:
-    part = DomainParticipant(0)
+    part = DomainParticipant(int(os.environ.get("ROS_DOMAIN_ID", "0")))
     seen = builtin.BuiltinDataReader(part, builtin.BuiltinTopicDcpsSubscription)
     held: dict[str, Any] = {}
     topics: dict[str, Any] = {}
@@ -147,7 +148,7 @@ def obey() -> None:
 
 
 def main(verb: str, name: str) -> None:
-    part = DomainParticipant(0)
+    part = DomainParticipant(int(os.environ.get("ROS_DOMAIN_ID", "0")))
     topic: Any = Topic(part, f"rt{name}", String_)
     how = Policy.Reliability.BestEffort if verb == "sensor" else RELIABLE
     qos = Qos(how, Policy.History.KeepLast(10))

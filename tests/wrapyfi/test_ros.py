@@ -7,6 +7,7 @@ of Zenoh; real Wrapyfi on rospy is in test_with_wrapyfi.py.
 from __future__ import annotations
 
 import json
+import os
 import threading
 import time
 from collections.abc import Iterator
@@ -16,6 +17,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from support.dds_program import Peer
 from support.peer import brings
 from support.process import Process
 from support.ros2_peer import peer_command, peer_environment, ros2_router
@@ -24,6 +26,7 @@ from support.wait import HANG, wait_until
 
 import yarpy
 from yarpy.peers.ros.message.library import default_library
+from yarpy.peers.ros2.dds.participant import LOCAL
 
 pytest.importorskip("zmq")
 
@@ -106,6 +109,17 @@ def router(monkeypatch: pytest.MonkeyPatch) -> Iterator[int]:
         MiddlewareCommunicator.close_all_instances()
 
 
+@pytest.fixture
+def dds(monkeypatch: pytest.MonkeyPatch) -> Iterator[None]:
+    """DDS on this computer alone, in a domain that other tests are not in."""
+    pytest.importorskip("cyclonedds.builtin")
+    monkeypatch.setenv("CYCLONEDDS_URI", LOCAL)
+    monkeypatch.setenv("ROS_DOMAIN_ID", str(100 + os.getpid() % 100))
+    monkeypatch.setenv("RMW_IMPLEMENTATION", "rmw_cyclonedds_cpp")
+    yield
+    MiddlewareCommunicator.close_all_instances()
+
+
 @contextmanager
 def serving(act: Any) -> Iterator[None]:
     """Answer again and again in a thread, as a program's loop does."""
@@ -156,16 +170,17 @@ def both_ways(mware: str) -> list[Robot]:
     return [here, there]
 
 
-def requests(mware: str) -> None:
-    """Questions, also those that fail, and answers of every type."""
+def requests(mware: str, tells: bool = True) -> None:
+    """Questions, also those that fail where that is told, and answers of every type."""
     here, there = Robot(), Robot()
     for one, mode in ((here, "reply"), (there, "request")):
         one.activate_communication("ask", mode)
         one.activate_communication("ask_more", mode)
     with serving(lambda: here.ask(mware=mware)):
         assert there.ask(4, mware=mware, name="x") == [{"twice": 8, "name": "x"}]
-        with pytest.raises(yarpy.YarpError, match="unsupported operand"):
-            there.ask(None, mware=mware)
+        if tells:
+            with pytest.raises(yarpy.YarpError, match="unsupported operand"):
+                there.ask(None, mware=mware)
         assert there.ask(1.5, mware=mware)[0]["twice"] == 3.0  # it lives
         with serving(lambda: here.ask_more(mware=mware)):
             image, (samples, rate) = there.ask_more(mware=mware)
@@ -203,6 +218,25 @@ def test_ros2(router: int) -> None:
 
 def test_services_of_ros2(router: int) -> None:
     requests("ros2")
+
+
+def test_ros2_over_dds(dds: None) -> None:
+    both_ways("ros2")
+
+
+def test_services_of_ros2_over_dds(dds: None) -> None:
+    requests("ros2", tells=False)
+
+
+def test_ros2_beside_a_program_of_dds(dds: None) -> None:
+    here = Robot()
+    here.activate_communication("native", "publish")
+    with Peer() as peer:
+        peer.do("reader", "it", "/robot/native", "reliable", "volatile", 0)
+        here.native({"twice": (1, 2)}, mware="ros2")  # it waits for the reader
+        wait_until(lambda: peer.heard("it"), HANG, "it is heard")
+        (text,) = peer.heard("it")
+        assert json.loads(text) == {"twice": {"__wrapyfi__": ["tuple", [1, 2]]}}
 
 
 def test_ros2_beside_another_implementation(router: int, tmp_path: Path) -> None:

@@ -1,9 +1,10 @@
-"""ROS 2, by yarpy's own nodes over a router of Zenoh (rmw_zenoh). No ROS is needed.
+"""ROS 2, by yarpy's own nodes over a router of Zenoh, or over DDS where RMW_IMPLEMENTATION names a
+middleware of DDS. No ROS is needed.
 
 Rules: the router is that of YARPY_ZENOH or ZENOH_SESSION_CONFIG_URI, the domain that of
 ROS_DOMAIN_ID. Each publisher, listener, server and client is a node of its own, called as its class
 and its address. Services are those of Wrapyfi's package of interfaces, whose definitions are
-brought along. Nodes whose ROS 2 speaks DDS are not reached.
+brought along; over DDS a server that fails cannot tell.
 """
 
 from __future__ import annotations
@@ -11,6 +12,7 @@ from __future__ import annotations
 import os
 import re
 import threading
+import time
 from functools import partial
 from importlib.util import find_spec
 from typing import Any
@@ -27,13 +29,16 @@ from wrapyfi.middlewares._ros import (
 from wrapyfi.middlewares._side import Arrivals, Desk, Medium, Nothing, offer
 from yarpy.kits.wrap.middleware import Failure
 from yarpy.kits.wrap.spelling import failure, failure_of
+from yarpy.peers.ros2.dds.participant import POOL
 from yarpy.peers.ros2.key import domain
 from yarpy.peers.ros2.message.library import default_library
 from yarpy.peers.ros2.token import SERVER, SUBSCRIBER
 from yarpy.peers.ros2.zenoh.participant import take_part
 
-if not (find_spec("zenoh") and find_spec("xxhash")):
+if not (find_spec("zenoh") and find_spec("xxhash")) and not find_spec("cyclonedds"):
     raise ImportError("it needs eclipse-zenoh and xxhash: pip install 'yarpy-wrapyfi[ros2]'")
+
+_LOOK = 0.02  # seconds between looks who is there, over DDS
 
 _PACKAGE = "wrapyfi_ros2_interfaces"
 _AUDIO = f"{_PACKAGE}/ROS2AudioMessage"
@@ -49,10 +54,15 @@ def _load(name: str) -> Any:
     return default_library().message(name)
 
 
+def _is_dds() -> bool:
+    """Return whether nodes speak DDS, as `yarpy.ros2.Node` decides it."""
+    return os.environ.get("RMW_IMPLEMENTATION", "") not in ("", "zenoh", "rmw_zenoh_cpp")
+
+
 def _target(side: Any, topic: str, type_: str | None, kind: str = "msg") -> str:
     """A topic or service as something to connect to."""
     node = re.sub(r"[^A-Za-z0-9_]+", "_", str(side.__name__)).strip("_") or "wrapyfi"
-    found = f"ros2+node.{node}_{id(side):x}://{topic.strip('/')}"
+    found = f"ros2{'+dds' if _is_dds() else ''}+node.{node}_{id(side):x}://{topic.strip('/')}"
     if type_ is None:
         return found
     package, _, name = type_.partition("/")
@@ -66,15 +76,29 @@ class _Watch:
         self._topic = f"/{topic.strip('/')}"
         self._awaited = kind
         self._closed = threading.Event()
-        self._part = take_part(domain(None))
+        self._dds = _is_dds()
+        self._part: Any = (POOL.take if self._dds else take_part)(domain(None))
 
     def wait(self, seconds: float) -> bool:
-        return bool(self._part.graph.wait(self._topic, self._awaited, timeout=seconds))
+        if not self._dds:
+            return bool(self._part.graph.wait(self._topic, self._awaited, timeout=seconds))
+        name = f"rt{self._topic}" if self._awaited == SUBSCRIBER else f"rq{self._topic}Request"
+        until = time.monotonic() + seconds
+        while not self._closed.is_set():
+            if any(found.topic_name == name for found in self._part.endpoints(SUBSCRIBER)):
+                return True
+            if time.monotonic() >= until:
+                break
+            time.sleep(_LOOK)
+        return False
 
     def end(self) -> None:
         if not self._closed.is_set():
             self._closed.set()
-            self._part.close()
+            if self._dds:
+                POOL.leave(self._part)
+            else:
+                self._part.close()
 
 
 class _Out(_Watch):
