@@ -119,6 +119,41 @@ def test_no_thread_no_port(loop: AcceptLoop, monkeypatch: pytest.MonkeyPatch) ->
 
 @pytest.mark.skipif(not hasattr(os, "fork"), reason="no fork here")
 @pytest.mark.filterwarnings("ignore:.*use of fork:DeprecationWarning")
+def test_a_signal_while_the_thread_begins_leaves_none(
+    loop: AcceptLoop, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """And nobody hears of what became of it."""
+    failed: list[object] = []
+    monkeypatch.setattr(threading, "excepthook", failed.append)
+    begun: list[threading.Thread] = []
+    late = threading.Event()
+
+    class Cut(threading.Thread):
+        def start(self) -> None:
+            begun.append(self)
+            super().start()
+            if len(begun) == 1:
+                raise KeyboardInterrupt
+
+        def run(self) -> None:
+            assert len(begun) > 1 or late.wait(HANG)
+            super().run()
+
+    monkeypatch.setattr(accept_loop, "Thread", Cut)
+    with pytest.raises(KeyboardInterrupt):
+        Acceptor("/p", 0, echo)
+    assert loop.thread is None
+    other = Acceptor("/other", 0, echo)  # whose sockets the first one lets alone
+    late.set()
+    begun[0].join(HANG)
+    assert not begun[0].is_alive()
+    assert loop.thread is begun[1]
+    assert ask(other.port) == b"some word"
+    other.close()
+    begun[1].join(HANG)
+    assert not failed
+
+
 def test_forked_process_begins_anew(loop: AcceptLoop) -> None:
     def child(report: Callable[[bytes], object]) -> None:
         loop.start_over()

@@ -98,14 +98,15 @@ class AcceptLoop:
     # -- the thread -------------------------------------------------------------------------------
 
     def _start(self) -> None:
-        self._selector = selectors.DefaultSelector()
+        self._selector = selector = selectors.DefaultSelector()
         if not _SEES_MORE:
             self._waker = socket.socketpair()
-            self._selector.register(self._waker[0], selectors.EVENT_READ, None)
-        self.thread = Thread(target=self._run, name="yarpy accept", daemon=True)
+            selector.register(self._waker[0], selectors.EVENT_READ, None)
+        name = "yarpy accept"
+        self.thread = Thread(target=self._run, args=(selector,), name=name, daemon=True)
         try:
             self.thread.start()
-        except BaseException:
+        except BaseException:  # out of a signal handler it may run all the same, to its end
             self._stop()
             raise
 
@@ -116,10 +117,8 @@ class AcceptLoop:
             sock.close()
         self._selector = self._waker = self.thread = None
 
-    def _run(self) -> None:
-        selector = self._selector
-        assert selector is not None
-        while not self._is_over():
+    def _run(self, selector: selectors.BaseSelector) -> None:
+        while not self._is_over(selector):
             for key, _ in selector.select(self._until_due()):
                 if key.data is None:
                     self._let_in()
@@ -130,11 +129,14 @@ class AcceptLoop:
             for entrance in [one for one, due in self._due.items() if due <= now]:
                 self._call(entrance, entrance.look)
 
-    def _is_over(self) -> bool:
-        """Return whether no port is left; then this is no longer the accepting thread."""
-        if self._entrances:
+    def _is_over(self, selector: selectors.BaseSelector) -> bool:
+        """Return whether no port is left; then the thread with that selector is no longer the
+        accepting one."""
+        if self._entrances and self._selector is selector:
             return False
         with self._lock:
+            if self._selector is not selector:
+                return True
             if not self._entrances:
                 self._stop()
             return not self._entrances
