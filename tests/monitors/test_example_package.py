@@ -28,7 +28,10 @@ def installed(tmp_path_factory: pytest.TempPathFactory) -> Path:
 USE = """
 import yarpy
 names = yarpy.LocalNames()
-with yarpy.Port("/motor", names=names) as motor, yarpy.Port("/stick", names=names) as stick:
+with (
+    yarpy.BufferedPort("/motor", strict=True, names=names) as motor,  # which holds up no writer
+    yarpy.Port("/stick", names=names) as stick,
+):
     stick.connect("/motor", "tcp+recv.limit+most.10")
     for value in ([5, -20.5], ["stop"], [1, 2]):
         stick.write(value)
