@@ -121,13 +121,14 @@ def test_a_port_that_cannot_open_costs_a_warning(
 
 PROGRAM = """
 import logging, os, sys, yarpy
+import yarpy.port.keep.log_forwarding as forwarding
+forwarding.TIMEOUT = 20.0  # for its last words, on a busy machine
 logging.basicConfig(level="INFO", stream=sys.stdout)
 with yarpy.Port("/parent"):
     logging.info("parent")
     if hasattr(os, "fork") and os.fork() == 0:
         with yarpy.Port("/child"):
             logging.info("child")
-            import yarpy.port.keep.log_forwarding as forwarding
             forwarding.end()
             os._exit(0)
     os.wait()

@@ -4,6 +4,11 @@ import json
 import signal
 from pathlib import Path
 
+import pytest
+from support.wait import HANG
+
+from yarpy.kits.launch.supervise import leftover
+
 
 def test_where_nothing_runs(cli) -> None:
     done = cli.run("down")
@@ -12,7 +17,7 @@ def test_where_nothing_runs(cli) -> None:
     assert done.returncode == 1 and 'no application called "other" runs here' in done.stderr
 
 
-def test_what_may_go_on_at_a_server_is_tried_again(cli) -> None:
+def test_what_may_go_on_at_a_server_is_tried_again(cli, monkeypatch: pytest.MonkeyPatch) -> None:
     """A server that stands still, as one whose computer is gone, and then goes on."""
     left = {"run": "", "programs": [], "away": {"lab:far": "/down/node"}}
     with cli.start("run", "--server", "/down/node", "--end-programs") as node:
@@ -23,11 +28,13 @@ def test_what_may_go_on_at_a_server_is_tried_again(cli) -> None:
         folder.mkdir(mode=0o700, exist_ok=True, parents=True)
         (folder / "lab.json").write_text(json.dumps(left))
         node.signal(signal.SIGSTOP)
+        monkeypatch.setattr(leftover, "_FAR", 0.5)
         done = cli.run("down", "lab")
         assert done.returncode == 1
         assert "lab:far may go on at /down/node: " in done.stderr
         assert "`yarpy down lab` tries again" in done.stderr
         node.signal(signal.SIGCONT)
+        monkeypatch.setattr(leftover, "_FAR", HANG)  # what a busy machine takes
         done = cli.run("down", "lab")
         assert done.stdout == "ended what was left of lab: lab:far at /down/node\n", done.stderr
         done = cli.run("down", "lab")
