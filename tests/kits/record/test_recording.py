@@ -72,3 +72,5 @@ def test_nothing_to_read(tmp_path: Path) -> None:
         record.open(tmp_path / "empty")
     with pytest.raises(MissingFile):
         record.open(tmp_path / "x.mcap", tmp_path / "gone")
+    with pytest.raises(MissingFile, match="an unset variable"):
+        record.open("")

@@ -15,7 +15,7 @@ from collections.abc import Collection, Iterator, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Protocol, Self
 
-from yarpy.errors import DecodeError, UnknownName
+from yarpy.errors import DecodeError, MissingFile, UnknownName
 from yarpy.kits.record.bag.reader import BagStorage, is_bag
 from yarpy.kits.record.dumper.reader import DumperStorage
 from yarpy.kits.record.envelope import SECOND
@@ -216,6 +216,8 @@ def open_recording(*paths: str | Path) -> Recording:
     storages: list[Storage] = []
     try:
         for path in paths:
+            if path == "":
+                raise MissingFile("a file without a name (an unset variable?): . is this folder")
             storages.extend(_storages(Path(path)))
     except BaseException:
         for storage in storages:

@@ -4,7 +4,7 @@ import pytest
 from support.wait import HANG, wait_until
 
 import yarpy
-from yarpy.errors import LocalProtocolError
+from yarpy.errors import AddressError, LocalProtocolError
 from yarpy.kits.record.capture.subscriptions import PortSelection, Subscriptions, can_be_heard
 
 
@@ -32,6 +32,11 @@ def test_which_ports() -> None:
     assert not PortSelection(("/a",)).searching and not PortSelection(("/a",)).matches("/a")
     with pytest.raises(LocalProtocolError, match=r"is no regular expression: .*; all below"):
         PortSelection(pattern="(")
+    known = ("topic://a", "/127.0.0.1:10002", "/topic@/node")
+    assert PortSelection(known).names == known
+    for never in ("", "cam", "/a b"):
+        with pytest.raises(AddressError, match="port name"):
+            PortSelection((never,))
 
 
 def test_a_port_that_comes_and_comes_back(names, port) -> None:

@@ -18,7 +18,7 @@ from dataclasses import dataclass, field
 from typing import Final
 
 from yarpy.config.configuration import ROOT, namespaces
-from yarpy.contact import Contact
+from yarpy.contact import Contact, check_name, parse_contact
 from yarpy.data.bottle import Property
 from yarpy.errors import LocalProtocolError, NoNameServer, YarpError
 from yarpy.names.base import NameClient
@@ -42,7 +42,7 @@ AT_ONCE: Final = 8  # connections that are being made
 class PortSelection:
     """Which ports: `names`, those that contain a match of `pattern`, or `every` one; not those that
     contain a match of `exclude`, unless they are named. Raises LocalProtocolError for what is no
-    regular expression."""
+    regular expression, AddressError for what can never be the name of a port."""
 
     names: tuple[str, ...] = ()
     every: bool = False
@@ -52,6 +52,9 @@ class PortSelection:
     _left: re.Pattern[str] | None = field(init=False, repr=False, compare=False, default=None)
 
     def __post_init__(self) -> None:
+        for name in self.names:
+            if not parse_contact(name).host and ":/" not in name:  # a carrier, a ROS topic
+                check_name(name)
         object.__setattr__(self, "_found", compiled(self.pattern))
         object.__setattr__(self, "_left", compiled(self.exclude))
 
