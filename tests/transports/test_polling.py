@@ -6,6 +6,7 @@ import socket
 import threading
 from collections.abc import Iterator
 from types import SimpleNamespace
+from typing import Any
 
 import pytest
 from support.wait import HANG
@@ -82,10 +83,26 @@ def test_our_own_shutdown_ends_a_wait(pair: Pair, monkeypatch: pytest.MonkeyPatc
     monkeypatch.setattr(polling, "SLICE", 0.0)
     waits = Polling(pair[0])
     assert not waits.wait(reads=True, seconds=0.01)
-    threading.Timer(0.01, lambda: setattr(waits, "shut", True)).start()
+    threading.Timer(0.01, waits.interrupt).start()
     assert waits.wait(reads=False, seconds=HANG)
-    pair[0].shutdown(socket.SHUT_RDWR)
+    waits.interrupt()  # returns when the timer's has
     assert waits.recv_into(memoryview(bytearray(9))) == 0
+
+
+def test_nobody_closes_what_another_thread_shuts_down() -> None:
+    calls: list[str] = []
+
+    def shutdown(_how: int) -> None:
+        closes.start()
+        closes.join(0.05)  # it waits, for ever so long
+        calls.append("shut down")
+
+    sock: Any = SimpleNamespace(shutdown=shutdown, close=lambda: calls.append("closed"))
+    waits = Polling(sock)
+    closes = threading.Thread(target=waits.close)
+    waits.interrupt()
+    closes.join(HANG)
+    assert calls == ["shut down", "closed"]
 
 
 def test_everything_is_sent_as_the_peer_takes_it(pair: Pair) -> None:

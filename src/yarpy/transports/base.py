@@ -12,6 +12,7 @@ import socket
 import struct
 import sys
 from collections.abc import Callable, Sequence
+from contextlib import suppress
 from typing import Any, TypeVar
 
 from yarpy.errors import LocalProtocolError
@@ -335,14 +336,13 @@ class SocketTransport(Answerable):
 
     def interrupt(self) -> None:
         if self._polling is not None:
-            self._polling.shut = True
-        try:
-            self.sock.shutdown(socket.SHUT_RDWR)
-        except OSError:
-            pass  # not connected any more: no thread is waiting inside
+            self._polling.interrupt()
+        else:
+            with suppress(OSError):  # not connected any more: no thread is waiting inside
+                self.sock.shutdown(socket.SHUT_RDWR)
 
     def close(self) -> None:
-        self.sock.close()
+        (self._polling or self.sock).close()
 
 
 # Plain numbers: combining the enumerations of `socket` costs as much as a system call.

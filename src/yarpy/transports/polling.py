@@ -4,7 +4,8 @@ Rules: there the socket itself never waits, and every wait is one by select. A r
 the kernel (SO_RCVTIMEO) would not do: after one that is over, Windows says nothing certain about
 the socket any more, and its error is that of a peer whose host is dead; and a send that waits keeps
 its thread until the last byte has gone. Select does not see a shutdown of this side, so waits come
-in slices and ask for it.
+in slices and ask for it. Nobody closes a socket while another thread shuts it down: its number may
+be another socket's by then, and the server of wine 8 ends.
 """
 
 from __future__ import annotations
@@ -12,8 +13,10 @@ from __future__ import annotations
 import errno
 import select
 import socket
+import threading
 import time
 from collections.abc import Callable, Iterable
+from contextlib import suppress
 from typing import Any, Final, TypeVar
 
 from yarpy.wire.stream import Buffer
@@ -31,6 +34,18 @@ class Polling:
         self.receiving: float | None = None
         self.sending: float | None = None
         self.shut = False  # this side was shut down: nobody is to wait any more
+        self._ending = threading.RLock()  # a signal handler may interrupt who closes
+
+    def interrupt(self) -> None:
+        """Shut both directions down, which ends all waits."""
+        self.shut = True
+        with self._ending, suppress(OSError):  # not connected any more, or closed
+            self._sock.shutdown(socket.SHUT_RDWR)
+
+    def close(self) -> None:
+        """Close the socket, as soon as nobody is shutting it down."""
+        with self._ending:
+            self._sock.close()
 
     def recv_into(self, view: memoryview) -> int:
         """Return the size of what has come into `view`; 0: the end, also by our own shutdown.
