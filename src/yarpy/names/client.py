@@ -128,10 +128,7 @@ class YarpNameClient:
         return parse_registration(lines[0]) if lines else None
 
     def announce(self, name: str, ok: bool = True) -> None:
-        if ok:
-            self.command("announce", name)
-        else:
-            self.command("announce", name, 0)
+        self.command("announce", name, *([] if ok else [0]))
 
     def set(self, name: str, key: str, *values: str | int | float) -> Strings:
         return list(map(plain_text, self.request(["bot", "set", name, key, *values])))

@@ -12,6 +12,7 @@ from bisect import bisect_left, insort
 from collections import Counter
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import dataclass
+from functools import partial
 
 from yarpy.contact import Contact
 from yarpy.errors import AddressError
@@ -115,13 +116,8 @@ class NameStore:
         self._is_taken = is_taken
         self.port = port
         self.limits = limits if limits is not None else Limits()
-        self.numbers = Pool(
-            "port numbers",
-            port + 2,
-            min(port + 9999, 65535),
-            recycle=False,
-            remember=True,
-        )
+        last = min(port + 9999, 65535)
+        self.numbers = Pool("port numbers", port + 2, last, recycle=False, remember=True)
         self.temporary = Pool(
             "temporary names", 1, self.limits.names, lambda counter: f"{TEMPORARY}{counter}"
         )
@@ -145,10 +141,7 @@ class NameStore:
         """Call `on_change(kind, key)` for every change from now on."""
         self._on_change = on_change
         for kind, pool in self.pools.items():
-            if on_change is None:
-                pool.on_change = None
-            else:
-                pool.on_change = _bind(on_change, kind)
+            pool.on_change = None if on_change is None else partial(on_change, kind)
 
     # --- looking
 
@@ -395,7 +388,3 @@ class NameStore:
     def _changed(self, kind: str, key: str) -> None:
         if self._on_change is not None:
             self._on_change(kind, key)
-
-
-def _bind(on_change: Callable[[str, str], None], kind: str) -> Callable[[str], None]:
-    return lambda value: on_change(kind, value)

@@ -203,9 +203,8 @@ class Membership:
             for publisher in self._publishers.values():
                 if again:
                     publisher.listed = publisher.uri in wanted
-            gone = [
-                item for uri, item in self._publishers.items() if item.listed and uri not in wanted
-            ]
+            known = self._publishers.values()
+            gone = [item for item in known if item.listed and item.uri not in wanted]
             for item in gone:
                 del self._publishers[item.uri]
             left = {_host(uri) for uri in (*self._publishers, *wanted)}
@@ -230,11 +229,8 @@ class Membership:
         now = time.monotonic()
         with self._lock:
             for item in self._publishers.values():
-                if (
-                    item.link is not None
-                    and item.link not in hub.inputs.links
-                    and not item.dialling
-                ):
+                gone = item.link is not None and item.link not in hub.inputs.links
+                if gone and not item.dialling:
                     # It may have said goodbye, of which the master tells in a moment.
                     item.link, item.due = None, max(item.due, now + SOON)
             due = [item for item in self._publishers.values() if self._is_due(hub, item, now)]

@@ -31,7 +31,6 @@ from yarpy.errors import (
     LocalProtocolError,
     RemoteProtocolError,
     Timeout,
-    UnknownName,
 )
 from yarpy.kits.devices.adjustable import Adjustable
 from yarpy.kits.devices.closeable import local_prefix, prefix
@@ -39,7 +38,7 @@ from yarpy.kits.devices.control_board import command, grammar
 from yarpy.kits.devices.control_board.interface import MotorTorqueParameters
 from yarpy.kits.devices.control_board.newer import NewerMembers, Second, Values, Which
 from yarpy.kits.devices.control_board.remote_parts import Asks, RemotePids, RemoteVariables
-from yarpy.kits.devices.control_board.requests import Requests
+from yarpy.kits.devices.control_board.requests import asks_of
 from yarpy.kits.devices.control_board.state import State
 from yarpy.kits.devices.latest_message import LatestMessage
 from yarpy.names.base import NameClient
@@ -75,7 +74,7 @@ class ControlBoard(NewerMembers):
         local = local_prefix(local, remote)
         self._carrier = carrier
         with ExitStack() as resources:
-            self._ask: Asks = resources.enter_context(closing(_requests(remote, local, names)))
+            self._ask: Asks = resources.enter_context(closing(asks_of(remote, local, names)))
             self._command = resources.enter_context(
                 Port(f"{local}/command:o", names=names, callback=lambda message: None)
             )
@@ -389,20 +388,6 @@ class ControlBoard(NewerMembers):
                 self._command.connect(f"{self.remote}/command:i", self._carrier)
             if not self._command.write(message):
                 raise LinkClosed(f'"{self.remote}/command:i" is gone: is the robot running?')
-
-
-def _requests(remote: str, local: str, names: NameClient | None) -> Asks:
-    """Connect to the board at `remote` and return what asks it: in the words of YARP 3, or,
-    where nobody listens for those, in the functions of YARP 4. Raises UnknownName, LinkClosed."""
-    try:
-        return Requests(remote, f"{local}/rpc:o", names)
-    except UnknownName as unknown:
-        from yarpy.kits.devices.control_board.yarp4.requests import FunctionRequests
-
-        try:
-            return FunctionRequests(remote, f"{local}/nwc/rpc:o", names)
-        except UnknownName:
-            raise unknown from None
 
 
 def _spread(values: Any, count: int) -> list[Any]:

@@ -13,10 +13,11 @@ from typing import Any, Final
 
 from yarpy.data.bottle import Bottle
 from yarpy.data.value import Vocab
-from yarpy.errors import LocalProtocolError, RemoteProtocolError
+from yarpy.errors import LocalProtocolError, RemoteProtocolError, UnknownName
 from yarpy.kits.devices.closeable import Closeable
 from yarpy.kits.devices.control_board import grammar
 from yarpy.kits.devices.control_board.grammar import INTERFACES, PID, Form, Interface, Row
+from yarpy.kits.devices.control_board.remote_parts import Asks
 from yarpy.kits.devices.kind import FLAG, NOTHING, PAIR, Fixed
 from yarpy.names.base import NameClient
 from yarpy.port.rpc import RpcClient
@@ -220,3 +221,17 @@ class Requests(Closeable):
 
 def _prefix(interface: Interface) -> list[Vocab]:
     return [Vocab(interface.word)] if interface.word else []
+
+
+def asks_of(remote: str, local: str, names: NameClient | None) -> Asks:
+    """Connect to the board at `remote` and return what asks it: in the words of YARP 3, or,
+    where nobody listens for those, in the functions of YARP 4. Raises UnknownName, LinkClosed."""
+    try:
+        return Requests(remote, f"{local}/rpc:o", names)
+    except UnknownName as unknown:
+        from yarpy.kits.devices.control_board.yarp4.requests import FunctionRequests
+
+        try:
+            return FunctionRequests(remote, f"{local}/nwc/rpc:o", names)
+        except UnknownName:
+            raise unknown from None
