@@ -153,6 +153,10 @@ def test_files_that_are_no_text(tmp_path: Path) -> None:
         read_interface(tmp_path / "a.thrift")
     with pytest.raises(FileNotFoundError):
         read_interface(tmp_path / "none.thrift")
+    if Path("/dev/zero").exists():
+        (tmp_path / "zero.thrift").symlink_to("/dev/zero")
+        with pytest.raises(DecodeError, match="has more than 262144 characters"):
+            read_interface(tmp_path / "zero.thrift")
 
 
 def test_an_annotation_in_the_wrong_place_is_told(caplog: pytest.LogCaptureFixture) -> None:

@@ -37,6 +37,7 @@ from yarpy.limit import (
     THRIFT_DEPTH,
     THRIFT_INCLUDES,
     THRIFT_NESTED,
+    THRIFT_TEXT,
     THRIFT_TYPES,
 )
 from yarpy.log import logger
@@ -213,7 +214,10 @@ def text_interface(text: str, name: str = "text") -> Interface:
 
 
 def _read(path: Path) -> str:
-    data = path.read_bytes()
+    with path.open("rb") as file:
+        data = file.read(4 * THRIFT_TEXT + 1)  # as many bytes has a text at most
+    if len(data) > 4 * THRIFT_TEXT:
+        raise DecodeError(f"{path} has more than {THRIFT_TEXT} characters")
     try:
         return data.decode("utf-8")
     except UnicodeDecodeError as error:

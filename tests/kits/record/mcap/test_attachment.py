@@ -119,6 +119,9 @@ def test_what_cannot_be_attached(tmp_path: Path, monkeypatch: pytest.MonkeyPatch
     monkeypatch.setattr("yarpy.kits.record.capture.output.LARGEST", 3)
     with pytest.raises(LocalProtocolError, match="too large to be attached"):
         contents([path])
+    if Path("/dev/zero").exists():
+        with pytest.raises(LocalProtocolError, match="too large to be attached"):
+            contents(["/dev/zero"])
     with pytest.raises(OSError):
         contents([tmp_path / "none"])
 

@@ -204,7 +204,8 @@ def contents(paths: Iterable[str | Path]) -> dict[str, bytes]:
     for path in map(Path, paths):
         if path.name in found:
             raise LocalProtocolError(f"two files are called {path.name}: rename one of them")
-        if path.stat().st_size > LARGEST:
+        with path.open("rb") as file:
+            found[path.name] = file.read(LARGEST + 1)  # a device has no size
+        if len(found[path.name]) > LARGEST:
             raise LocalProtocolError(f"{path} is too large to be attached: {LARGEST} bytes at most")
-        found[path.name] = path.read_bytes()
     return found
