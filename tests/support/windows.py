@@ -196,7 +196,8 @@ def _text(said: bytes) -> str:
 
 def _is_left(pid: int) -> bool:
     """Return whether the main thread of a program has ended and others have not, which wait for a
-    server that is no more: an assertion in `sock_poll_event` of it fails as sockets come and go."""
+    server that is no more: an assertion in `sock_poll_event` of it fails where one thread closes a
+    socket that another is shutting down."""
     with suppress(OSError):
         state = Path(f"/proc/{pid}/stat").read_text("utf-8").rpartition(")")[2].split()[0]
         return state == "Z" and len(os.listdir(f"/proc/{pid}/task")) > 1

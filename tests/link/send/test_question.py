@@ -11,7 +11,7 @@ from support.cut import ALL_SEEN, cut_at
 from support.lasted import lasted
 from support.outbound import connected, link_on, open_link, read_messages
 from support.transport import scripted
-from support.wait import wait_until
+from support.wait import HANG, wait_until
 
 from yarpy.carriers.base import Limits
 from yarpy.carriers.own.tcp import FastTcp, Tcp
@@ -141,17 +141,24 @@ def test_reply_that_has_begun_must_come_along(
 
 
 def test_reply_in_pieces_leaves_no_limit_behind(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(FastTcp, "limits", Limits(message_timeout=0.2))
+    monkeypatch.setattr(FastTcp, "limits", Limits(message_timeout=HANG))
     with connected(FastTcp) as (link, far):
         link.incoming.budget = Budget(1 << 20)
         reply = Bottle(["x" * 300_000]).to_bytes()
+        transport = link.driver.transport
+        limit, limits = transport.limit_waiting, list[float | None]()
+
+        def noted(seconds: float | None, sends: bool = True) -> None:
+            limits.append(seconds)
+            limit(seconds, sends)
+
+        monkeypatch.setattr(transport, "limit_waiting", noted)
 
         def answer() -> None:
             for _ in range(2):
                 far.sendall(reply[:1000])
                 time.sleep(0.05)
                 far.sendall(reply[1000:])
-                time.sleep(0.5)
 
         thread = threading.Thread(target=answer)
         thread.start()
@@ -159,6 +166,7 @@ def test_reply_in_pieces_leaves_no_limit_behind(monkeypatch: pytest.MonkeyPatch)
             answered = link.call(Packet(["ask"], key=CALL))
             assert answered is not None
             assert len(answered.value[0]) == 300_000
+            assert HANG in limits and limits.pop() is None
         assert link.incoming.budget.total > 0
         link.incoming.leave()
         assert link.incoming.budget.total == 0
