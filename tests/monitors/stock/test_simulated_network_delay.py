@@ -7,9 +7,11 @@ import time
 
 import pytest
 from support.monitor import place
+from support.wait import HANG
 
 import yarpy
 from yarpy import LocalProtocolError
+from yarpy.monitors.stock import simulated_network_delay
 from yarpy.monitors.stock.simulated_network_delay import SimulatedNetworkDelay
 from yarpy.wire.message import DATA, Message
 
@@ -37,19 +39,20 @@ def test_wrong_delay(tokens: str) -> None:
         SimulatedNetworkDelay(place(tokens))
 
 
-def test_other_connections_go_on() -> None:
+def test_other_connections_go_on(monkeypatch: pytest.MonkeyPatch) -> None:
     """At the receiver's end only the slow connection waits."""
+    monkeypatch.setattr(simulated_network_delay, "_MOST", 1e6)
     names = yarpy.LocalNames()
     with (
-        yarpy.Port("/out", names=names) as out,
+        yarpy.BufferedPort("/out", strict=True, names=names) as out,
         yarpy.BufferedPort("/slow", strict=True, names=names) as slow,
         yarpy.BufferedPort("/fast", strict=True, names=names) as fast,
     ):
-        out.connect("/slow", "tcp+recv.simulated_network_delay+delay_ms.10000")
+        out.connect("/slow", "tcp+recv.simulated_network_delay+delay_ms.100000")
         out.connect("/fast")
         for number in range(5):
             assert out.write(number) == 2
-        read = [fast.read(timeout=10) for _ in range(5)]
+        read = [fast.read(timeout=HANG) for _ in range(5)]
         assert [message.value for message in read if message] == [0, 1, 2, 3, 4]
         with pytest.raises(yarpy.Timeout):
             slow.read(timeout=0)
