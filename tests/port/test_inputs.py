@@ -62,8 +62,11 @@ def _is_over(sock: socket.socket) -> bool:
     return True
 
 
-def test_of_connections_that_one_sender_makes_at_once_one_stays(names: LocalNames) -> None:
+def test_of_connections_that_one_sender_makes_at_once_one_stays(
+    names: LocalNames, monkeypatch: pytest.MonkeyPatch
+) -> None:
     """With two of them every message would come twice."""
+    monkeypatch.setattr(inputs, "LEAVING", 0.01)  # which a rival waits in each round
     events: list[ConnectionEvent] = []
     with Port("/in", names=names) as in_:
         in_.on_connection(events.append)
@@ -108,7 +111,10 @@ def test_the_end_of_a_connection_is_told_before_the_next_one_of_its_sender(
     assert events == [True, False, True, False]
 
 
-def test_nothing_of_a_replaced_connection_comes_after_its_successor(names: LocalNames) -> None:
+def test_nothing_of_a_replaced_connection_comes_after_its_successor(
+    names: LocalNames, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(inputs, "LEAVING", 0.01)  # which a rival waits in each round
     came: list[object] = []
     with Port("/in", names=names, callback=lambda message: came.append(message.value[0])) as in_:
         for _ in range(25):
