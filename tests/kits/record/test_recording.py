@@ -1,5 +1,6 @@
 """Recordings of one and of several files."""
 
+import os
 from pathlib import Path
 
 import pytest
@@ -72,5 +73,9 @@ def test_nothing_to_read(tmp_path: Path) -> None:
         record.open(tmp_path / "empty")
     with pytest.raises(MissingFile):
         record.open(tmp_path / "x.mcap", tmp_path / "gone")
+    if hasattr(os, "mkfifo"):  # opening one would wait for whoever writes to it
+        os.mkfifo(tmp_path / "empty/pipe.mcap")
+        with pytest.raises(MissingFile, match="has no recording"):
+            record.open(tmp_path / "empty")
     with pytest.raises(MissingFile, match="an unset variable"):
         record.open("")

@@ -234,7 +234,7 @@ def _storages(path: Path) -> Iterator[Storage]:
 
         yield LeRobotStorage(path)
     elif path.is_dir():
-        files = sorted(path.glob("*.mcap"))
+        files = sorted(one for one in path.glob("*.mcap") if one.is_file())
         yield from map(McapStorage, files)
         if not files:
             yield DumperStorage(path)

@@ -7,6 +7,7 @@ import pytest
 from support.recordings import START, STEP, payload_of, recorded
 
 from yarpy import record
+from yarpy.kits.record.lerobot import dataset
 from yarpy.kits.record.mcap.writer import McapWriter
 
 
@@ -78,3 +79,6 @@ def test_a_full_disk_is_told_with_the_name(here, tmp_path, monkeypatch) -> None:
     monkeypatch.setattr(McapWriter, "add", add)
     said = here("convert", str(path), "-o", str(tmp_path / "y"))
     assert (said.code, said.err) == (1, f"error: {os.strerror(errno.ENOSPC)}: {tmp_path / 'y'}\n")
+    monkeypatch.setattr(dataset, "export", add)
+    said = here("convert", str(path), "-o", "y", "--format", "lerobot", "--state", "/a")
+    assert said.code == 1 and said.err.startswith("error: y cannot be written: ")

@@ -24,7 +24,7 @@ import click
 
 from yarpy.cli.output import print_line
 from yarpy.cli.stderr import complain, warn
-from yarpy.errors import LocalProtocolError
+from yarpy.errors import LocalProtocolError, YarpError
 
 if TYPE_CHECKING:
     from yarpy.kits.record.recording import Recording
@@ -111,6 +111,10 @@ def write_dataset(
     except FileExistsError as error:
         complain(f"{error.filename} is there already: choose another name with -o")
         return 1
+    except OSError as error:
+        if isinstance(error, YarpError) or error.filename:
+            raise
+        raise LocalProtocolError(f"{path} cannot be written: {error}") from error
     print_line(f"{path}: {len(files)} episodes, {count} frames")
     return 0
 
