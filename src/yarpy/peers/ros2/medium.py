@@ -19,9 +19,8 @@ from yarpy.peers.ros2.dds.service import DdsClient, DdsServer, begun
 from yarpy.peers.ros2.key import domain
 from yarpy.peers.ros2.name import check_node, check_topic, node_of
 from yarpy.peers.ros2.qos import WORDS, qos_of_words
-from yarpy.peers.ros2.zenoh.endpoint import Client, Endpoint, Publisher, Server
+from yarpy.peers.ros2.zenoh.endpoint import Client, Endpoint, Publisher, Server, Subscriber
 from yarpy.peers.ros2.zenoh.participant import take_part
-from yarpy.peers.ros2.zenoh.reader import Reader
 from yarpy.route import CarrierSpec, Route
 from yarpy.transports.inbox import Inbox
 from yarpy.transports.opener import Opener
@@ -33,7 +32,7 @@ HUMBLE: Final = "humble"
 
 _KINDS: Final[dict[tuple[bool, bool], type[Endpoint]]] = {
     (False, False): Publisher,
-    (False, True): Reader,
+    (False, True): Subscriber,
     (True, False): Client,
     (True, True): Server,
 }

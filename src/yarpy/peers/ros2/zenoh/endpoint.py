@@ -287,11 +287,6 @@ class Subscriber(Endpoint):
                 )
             )
             return
-        self.subscribe(key, kind, hear)
-
-    def subscribe(self, key: Key, kind: Any, hear: Any) -> None:
-        """Have `hear` called with what comes from now on."""
-        session = self.participant.session
         self._handles.append(session.declare_subscriber(str(key), hear))
         if self.extra(kind):
             self._handles.append(session.declare_subscriber(f"{key}{BESIDE}", hear))
@@ -315,12 +310,6 @@ class Subscriber(Endpoint):
                 shown.close()
 
     def _heard(self, sample: Any) -> None:
-        item = self._read(sample)
-        if item is not None:
-            self.put(item, self._kept)
-
-    def _read(self, sample: Any) -> Incoming | None:
-        """What came; None for what the port should not have."""
         attached = sample.attachment
         number, when = 0, 0
         if attached is not None:
@@ -331,17 +320,17 @@ class Subscriber(Endpoint):
                 if str(error) != self._refused:
                     self._refused = str(error)
                     log.warning("%s: a message of %s is lost: %s", self.port_name, self.name, error)
-                return None
+                return
             before = self._numbers.get(sender, number - 1)
             if number <= before and self._repeats:
-                return None
+                return
             if number > before + 1:
                 self.dropped += number - before - 1
                 self.events.tell(Event(MESSAGE, number - before - 1))
             if len(self._numbers) >= MOST_PUBLISHERS and sender not in self._numbers:
                 del self._numbers[next(iter(self._numbers))]  # one that flaps has many names
             self._numbers[sender] = number
-        return Incoming(bytes(sample.payload), number, when)
+        self.put(Incoming(bytes(sample.payload), number, when), self._kept)
 
 
 class Client(Endpoint):
