@@ -143,7 +143,6 @@ OWN = {
     "peers/ros/message/show.py": "lines that are printed",
     "peers/ros2/name.py": "the length of a name in DDS",
     "peers/ros2/zenoh/graph.py": "what a router tells, not what is read of it",
-    "peers/ros2/zenoh/reader.py": "messages that wait, not what is read of them",
     "peers/zenoh/gateway.py": "connections, not what is read of them",
     "peers/zenoh/exchange.py": "connections, not what is read of them",
     "peers/zenoh/ways.py": "programs that are remembered",
