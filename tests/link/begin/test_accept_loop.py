@@ -117,8 +117,6 @@ def test_no_thread_no_port(loop: AcceptLoop, monkeypatch: pytest.MonkeyPatch) ->
     one.close()
 
 
-@pytest.mark.skipif(not hasattr(os, "fork"), reason="no fork here")
-@pytest.mark.filterwarnings("ignore:.*use of fork:DeprecationWarning")
 def test_a_signal_while_the_thread_begins_leaves_none(
     loop: AcceptLoop, monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -154,6 +152,8 @@ def test_a_signal_while_the_thread_begins_leaves_none(
     assert not failed
 
 
+@pytest.mark.skipif(not hasattr(os, "fork"), reason="no fork here")
+@pytest.mark.filterwarnings("ignore:.*use of fork:DeprecationWarning")
 def test_forked_process_begins_anew(loop: AcceptLoop) -> None:
     def child(report: Callable[[bytes], object]) -> None:
         loop.start_over()
