@@ -23,100 +23,94 @@ from __future__ import annotations
 from importlib import import_module
 from typing import TYPE_CHECKING
 
+__all__ = [
+    "BATTERY", "FEATURES", "AnalogSensor", "AnalogSensorServer", "Area", "AudioPlayer",
+    "AudioRecorder", "Battery", "BatteryServer", "CartesianController", "CartesianServer",
+    "ChatBot", "Colour", "ControlBoard", "ControlBoardServer", "ControlMode", "DepthCamera",
+    "Description", "DescriptionStorage", "Descriptions", "FrameGrabber", "FrameGrabberServer",
+    "FrameWriterServer", "Gains", "GazeController", "GazeServer", "Grid", "InteractionMode",
+    "Interface", "Joypad", "JoypadState", "LanguageModel", "Laser", "LaserServer", "Line",
+    "Localization2D", "LocalizedLaser", "Map2D", "MapStorage", "MobileBase",
+    "MotorTorqueParameters", "MultiSensor", "MultiSensorServer", "Navigation2D", "Odometry",
+    "Odometry2D", "Path", "Place", "Pose", "Refused", "Scan", "SerialPort",
+    "SimulatedAnalogSensor", "SimulatedArm", "SimulatedBase", "SimulatedBattery",
+    "SimulatedCamera", "SimulatedChatBot", "SimulatedCoupling", "SimulatedDepthCamera",
+    "SimulatedFrameWriter", "SimulatedHead", "SimulatedImu", "SimulatedJoints",
+    "SimulatedJoypad", "SimulatedLanguageModel", "SimulatedLaser", "SimulatedMicrophone",
+    "SimulatedPositionSensor", "SimulatedSerialPort", "SimulatedSpeaker",
+    "SimulatedSynthesizer", "SimulatedTranscription", "SimulatedWorld", "SpeechSynthesizer",
+    "SpeechTranscription", "Thing", "TransformClient", "TransformServer", "VirtualAnalogServer",
+    "World", "load_grid", "remap", "remap_remote", "save_grid",
+]  # fmt: skip
+
 if TYPE_CHECKING:
-    from yarpy.kits.devices.analog.client import AnalogSensor as AnalogSensor
-    from yarpy.kits.devices.analog.server import AnalogSensorServer as AnalogSensorServer
-    from yarpy.kits.devices.analog.virtual import VirtualAnalogServer as VirtualAnalogServer
-    from yarpy.kits.devices.battery.client import Battery as Battery
-    from yarpy.kits.devices.battery.interface import BATTERY as BATTERY
-    from yarpy.kits.devices.battery.server import BatteryServer as BatteryServer
-    from yarpy.kits.devices.control_board.client import ControlBoard as ControlBoard
-    from yarpy.kits.devices.control_board.interface import ControlMode as ControlMode
-    from yarpy.kits.devices.control_board.interface import Gains as Gains
-    from yarpy.kits.devices.control_board.interface import InteractionMode as InteractionMode
+    from yarpy.kits.devices.analog.client import AnalogSensor
+    from yarpy.kits.devices.analog.server import AnalogSensorServer
+    from yarpy.kits.devices.analog.virtual import VirtualAnalogServer
+    from yarpy.kits.devices.battery.client import Battery
+    from yarpy.kits.devices.battery.interface import BATTERY
+    from yarpy.kits.devices.battery.server import BatteryServer
+    from yarpy.kits.devices.control_board.client import ControlBoard
     from yarpy.kits.devices.control_board.interface import (
-        MotorTorqueParameters as MotorTorqueParameters,
+        ControlMode,
+        Gains,
+        InteractionMode,
+        MotorTorqueParameters,
     )
-    from yarpy.kits.devices.control_board.remap import remap as remap
-    from yarpy.kits.devices.control_board.remap import remap_remote as remap_remote
-    from yarpy.kits.devices.control_board.server import ControlBoardServer as ControlBoardServer
-    from yarpy.kits.devices.controllers.cartesian import CartesianController as CartesianController
-    from yarpy.kits.devices.controllers.cartesian_server import CartesianServer as CartesianServer
-    from yarpy.kits.devices.controllers.gaze import GazeController as GazeController
-    from yarpy.kits.devices.controllers.gaze_server import GazeServer as GazeServer
-    from yarpy.kits.devices.frame_grabber.client import FrameGrabber as FrameGrabber
-    from yarpy.kits.devices.frame_grabber.interface import FEATURES as FEATURES
-    from yarpy.kits.devices.frame_grabber.server import FrameGrabberServer as FrameGrabberServer
-    from yarpy.kits.devices.frame_grabber.writer import FrameWriterServer as FrameWriterServer
-    from yarpy.kits.devices.interfaces.audio import AudioPlayer as AudioPlayer
-    from yarpy.kits.devices.interfaces.audio import AudioRecorder as AudioRecorder
-    from yarpy.kits.devices.interfaces.depth import DepthCamera as DepthCamera
-    from yarpy.kits.devices.interfaces.grid import Grid as Grid
-    from yarpy.kits.devices.interfaces.grid_file import load_grid as load_grid
-    from yarpy.kits.devices.interfaces.grid_file import save_grid as save_grid
-    from yarpy.kits.devices.interfaces.joypad import Joypad as Joypad
-    from yarpy.kits.devices.interfaces.joypad import JoypadState as JoypadState
-    from yarpy.kits.devices.interfaces.localization import Localization2D as Localization2D
-    from yarpy.kits.devices.interfaces.map2d import Map2D as Map2D
-    from yarpy.kits.devices.interfaces.mobile_base import MobileBase as MobileBase
-    from yarpy.kits.devices.interfaces.mobile_base import Odometry2D as Odometry2D
-    from yarpy.kits.devices.interfaces.navigation import Navigation2D as Navigation2D
-    from yarpy.kits.devices.interfaces.place import Area as Area
-    from yarpy.kits.devices.interfaces.place import Odometry as Odometry
-    from yarpy.kits.devices.interfaces.place import Path as Path
-    from yarpy.kits.devices.interfaces.place import Place as Place
-    from yarpy.kits.devices.interfaces.place import Thing as Thing
-    from yarpy.kits.devices.interfaces.serial import SerialPort as SerialPort
-    from yarpy.kits.devices.interfaces.speech import SpeechSynthesizer as SpeechSynthesizer
-    from yarpy.kits.devices.interfaces.speech import SpeechTranscription as SpeechTranscription
-    from yarpy.kits.devices.interfaces.talk import ChatBot as ChatBot
-    from yarpy.kits.devices.interfaces.talk import LanguageModel as LanguageModel
-    from yarpy.kits.devices.interfaces.talk import Line as Line
-    from yarpy.kits.devices.interfaces.world import Colour as Colour
-    from yarpy.kits.devices.interfaces.world import Description as Description
-    from yarpy.kits.devices.interfaces.world import Descriptions as Descriptions
-    from yarpy.kits.devices.interfaces.world import Pose as Pose
-    from yarpy.kits.devices.interfaces.world import World as World
-    from yarpy.kits.devices.laser.client import Laser as Laser
-    from yarpy.kits.devices.laser.interface import Scan as Scan
-    from yarpy.kits.devices.laser.server import LaserServer as LaserServer
-    from yarpy.kits.devices.multi_sensor.client import MultiSensor as MultiSensor
-    from yarpy.kits.devices.multi_sensor.server import MultiSensorServer as MultiSensorServer
-    from yarpy.kits.devices.network.model import Interface as Interface
-    from yarpy.kits.devices.refusal import Refused as Refused
-    from yarpy.kits.devices.simulated.analog import SimulatedAnalogSensor as SimulatedAnalogSensor
-    from yarpy.kits.devices.simulated.arm import SimulatedArm as SimulatedArm
-    from yarpy.kits.devices.simulated.audio import SimulatedMicrophone as SimulatedMicrophone
-    from yarpy.kits.devices.simulated.audio import SimulatedSpeaker as SimulatedSpeaker
-    from yarpy.kits.devices.simulated.base import SimulatedBase as SimulatedBase
-    from yarpy.kits.devices.simulated.battery import SimulatedBattery as SimulatedBattery
-    from yarpy.kits.devices.simulated.camera import SimulatedCamera as SimulatedCamera
-    from yarpy.kits.devices.simulated.coupling import SimulatedCoupling as SimulatedCoupling
-    from yarpy.kits.devices.simulated.depth_camera import (
-        SimulatedDepthCamera as SimulatedDepthCamera,
-    )
-    from yarpy.kits.devices.simulated.frame_writer import (
-        SimulatedFrameWriter as SimulatedFrameWriter,
-    )
-    from yarpy.kits.devices.simulated.head import SimulatedHead as SimulatedHead
-    from yarpy.kits.devices.simulated.imu import SimulatedImu as SimulatedImu
-    from yarpy.kits.devices.simulated.joints import SimulatedJoints as SimulatedJoints
-    from yarpy.kits.devices.simulated.joypad import SimulatedJoypad as SimulatedJoypad
-    from yarpy.kits.devices.simulated.laser import SimulatedLaser as SimulatedLaser
-    from yarpy.kits.devices.simulated.localized_laser import LocalizedLaser as LocalizedLaser
-    from yarpy.kits.devices.simulated.map_storage import MapStorage as MapStorage
-    from yarpy.kits.devices.simulated.position_sensor import (
-        SimulatedPositionSensor as SimulatedPositionSensor,
-    )
-    from yarpy.kits.devices.simulated.serial import SimulatedSerialPort as SimulatedSerialPort
-    from yarpy.kits.devices.simulated.speech import SimulatedSynthesizer as SimulatedSynthesizer
-    from yarpy.kits.devices.simulated.speech import SimulatedTranscription as SimulatedTranscription
-    from yarpy.kits.devices.simulated.talk import SimulatedChatBot as SimulatedChatBot
-    from yarpy.kits.devices.simulated.talk import SimulatedLanguageModel as SimulatedLanguageModel
-    from yarpy.kits.devices.simulated.world import DescriptionStorage as DescriptionStorage
-    from yarpy.kits.devices.simulated.world import SimulatedWorld as SimulatedWorld
-    from yarpy.kits.devices.transforms.client import TransformClient as TransformClient
-    from yarpy.kits.devices.transforms.server import TransformServer as TransformServer
+    from yarpy.kits.devices.control_board.remap import remap, remap_remote
+    from yarpy.kits.devices.control_board.server import ControlBoardServer
+    from yarpy.kits.devices.controllers.cartesian import CartesianController
+    from yarpy.kits.devices.controllers.cartesian_server import CartesianServer
+    from yarpy.kits.devices.controllers.gaze import GazeController
+    from yarpy.kits.devices.controllers.gaze_server import GazeServer
+    from yarpy.kits.devices.frame_grabber.client import FrameGrabber
+    from yarpy.kits.devices.frame_grabber.interface import FEATURES
+    from yarpy.kits.devices.frame_grabber.server import FrameGrabberServer
+    from yarpy.kits.devices.frame_grabber.writer import FrameWriterServer
+    from yarpy.kits.devices.interfaces.audio import AudioPlayer, AudioRecorder
+    from yarpy.kits.devices.interfaces.depth import DepthCamera
+    from yarpy.kits.devices.interfaces.grid import Grid
+    from yarpy.kits.devices.interfaces.grid_file import load_grid, save_grid
+    from yarpy.kits.devices.interfaces.joypad import Joypad, JoypadState
+    from yarpy.kits.devices.interfaces.localization import Localization2D
+    from yarpy.kits.devices.interfaces.map2d import Map2D
+    from yarpy.kits.devices.interfaces.mobile_base import MobileBase, Odometry2D
+    from yarpy.kits.devices.interfaces.navigation import Navigation2D
+    from yarpy.kits.devices.interfaces.place import Area, Odometry, Path, Place, Thing
+    from yarpy.kits.devices.interfaces.serial import SerialPort
+    from yarpy.kits.devices.interfaces.speech import SpeechSynthesizer, SpeechTranscription
+    from yarpy.kits.devices.interfaces.talk import ChatBot, LanguageModel, Line
+    from yarpy.kits.devices.interfaces.world import Colour, Description, Descriptions, Pose, World
+    from yarpy.kits.devices.laser.client import Laser
+    from yarpy.kits.devices.laser.interface import Scan
+    from yarpy.kits.devices.laser.server import LaserServer
+    from yarpy.kits.devices.multi_sensor.client import MultiSensor
+    from yarpy.kits.devices.multi_sensor.server import MultiSensorServer
+    from yarpy.kits.devices.network.model import Interface
+    from yarpy.kits.devices.refusal import Refused
+    from yarpy.kits.devices.simulated.analog import SimulatedAnalogSensor
+    from yarpy.kits.devices.simulated.arm import SimulatedArm
+    from yarpy.kits.devices.simulated.audio import SimulatedMicrophone, SimulatedSpeaker
+    from yarpy.kits.devices.simulated.base import SimulatedBase
+    from yarpy.kits.devices.simulated.battery import SimulatedBattery
+    from yarpy.kits.devices.simulated.camera import SimulatedCamera
+    from yarpy.kits.devices.simulated.coupling import SimulatedCoupling
+    from yarpy.kits.devices.simulated.depth_camera import SimulatedDepthCamera
+    from yarpy.kits.devices.simulated.frame_writer import SimulatedFrameWriter
+    from yarpy.kits.devices.simulated.head import SimulatedHead
+    from yarpy.kits.devices.simulated.imu import SimulatedImu
+    from yarpy.kits.devices.simulated.joints import SimulatedJoints
+    from yarpy.kits.devices.simulated.joypad import SimulatedJoypad
+    from yarpy.kits.devices.simulated.laser import SimulatedLaser
+    from yarpy.kits.devices.simulated.localized_laser import LocalizedLaser
+    from yarpy.kits.devices.simulated.map_storage import MapStorage
+    from yarpy.kits.devices.simulated.position_sensor import SimulatedPositionSensor
+    from yarpy.kits.devices.simulated.serial import SimulatedSerialPort
+    from yarpy.kits.devices.simulated.speech import SimulatedSynthesizer, SimulatedTranscription
+    from yarpy.kits.devices.simulated.talk import SimulatedChatBot, SimulatedLanguageModel
+    from yarpy.kits.devices.simulated.world import DescriptionStorage, SimulatedWorld
+    from yarpy.kits.devices.transforms.client import TransformClient
+    from yarpy.kits.devices.transforms.server import TransformServer
 else:
     # Type checkers do not see this: with the function below every name would be right.
     _NAMES = {
@@ -184,7 +178,6 @@ else:
         "transforms.server": "TransformServer",
     }
     _WHERE = {name: module for module, names in _NAMES.items() for name in names.split()}
-    __all__ = sorted(_WHERE)
 
     def __getattr__(name):
         module = _WHERE.get(name)
