@@ -62,6 +62,12 @@ ASKING = [
     ({"host": "evil.test:1", "user-agent": "Mozilla/5.0"}, False),
     ({"host": "10.0.0.1:1", "origin": "http://evil.test"}, False),
     ({"host": "10.0.0.1:1", "sec-fetch-site": "cross-site"}, False),
+    ({"host": "10.0.0.1:1", "origin": "http://10.0.0.1:8080"}, True),  # pages of this network
+    ({"host": "10.0.0.1:1", "origin": "http://192.168.1.5"}, True),
+    ({"host": "robot:1", "referer": "http://dash:8080/page"}, True),
+    ({"host": "evil.test:1", "origin": "http://192.168.1.5"}, False),
+    ({"host": "10.0.0.1:1", "origin": "http://8.8.8.8"}, False),
+    ({"host": "10.0.0.1:1", "origin": "null"}, False),
 ]
 
 

@@ -10,7 +10,8 @@
 Rules: the one place that decides about pages. A browser names the origin of the page that makes the
 request; other programs may always act. This protects people who browse; it is not a password.
 
-- Acting is for the port's own page, and those that the setting names.
+- Acting is for the port's own page, and those that the setting names; asking (`get`, `list`,
+  `query`) for pages of this network as well.
 - What a program's pages say (a dash, a panel) is for the same ones.
 - What the port itself writes and says is for pages of this network as well: those of computers with
   a private address or a name without dots. No site of the internet reads what a robot sends.
@@ -48,22 +49,20 @@ class Origins:
         """Return whether a request with these headers may change something: it comes from a listed
         page, from the port's own, or from a program that is not a browser.
 
-        `secure`: it came over TLS. `asks`: it only asks.
+        `secure`: it came over TLS. `asks`: it only asks, which pages of this network may.
         """
         if self.listed is None:
             return True
-        origin = _origin(headers)
+        origin, host = _origin(headers), headers.get("host", "")
         if origin is not None:
-            return self._is_listed(origin) or self._is_own(origin, headers.get("host", ""), secure)
+            near = asks and (secure or self.knows(host)) and self._is_near(origin, host, secure)
+            return near or self._is_listed(origin) or self._is_own(origin, host, secure)
         site = headers.get("sec-fetch-site")
         if site is not None:
-            return site in ("same-origin", "none") and self.knows(headers.get("host", ""))
+            return site in ("same-origin", "none") and self.knows(host)
         # A browser that names no origin may do so because the page made it hide it.
-        return (
-            not self._browses(headers)
-            or "null" in self.listed
-            or (asks and self.knows(headers.get("host", "")))
-        )
+        hides = self._browses(headers) and "null" not in self.listed
+        return not hides or (asks and self.knows(host))
 
     def shows(self, headers: Mapping[str, str], secure: bool = False) -> bool:
         """Return whether the client may see the pages of a program: no page of another origin may,
