@@ -87,6 +87,22 @@ def test_a_change_while_it_is_asked_is_not_missed() -> None:
     assert known.get("/rate") == 6
 
 
+def test_a_master_that_does_not_answer_is_told_of_the_end_once() -> None:
+    """Else closing a node would take two seconds for each of its parameters."""
+    master = Master(a=1, b=2, c=3)
+    known = followed(master)
+    for name in ("/a", "/b", "/c"):
+        known.get(name)
+
+    def silent() -> None:
+        raise NoNameServer("silent")
+
+    master.asked.clear()
+    master.during = silent
+    known.end()
+    assert [method for method, _ in master.asked] == ["unsubscribeParam"]
+
+
 def test_our_node_hears_of_changes(graph: RosGraph) -> None:
     told: queue.SimpleQueue[Any] = queue.SimpleQueue()
 

@@ -88,14 +88,16 @@ class Followed:
         self.change("/")
 
     def end(self) -> None:
-        """Tell the master that nothing is followed any more."""
+        """Tell the master that nothing is followed any more; one that does not answer is told no
+        more, since each question may take its whole time."""
         self._ended = True
         self._changed.set()
-        for key in self._keys:
+        for key in tuple(self._keys):
             try:
                 self._master.call("unsubscribeParam", self._node, self._uri, key, timeout=2.0)
             except YarpError as error:
-                log.info("%s: %s stays subscribed: %s", self._node, key, error)
+                log.info("%s: its parameters stay subscribed: %s", self._node, error)
+                return
 
     def _run(self) -> None:
         while True:

@@ -32,6 +32,7 @@ from yarpy.kits.wrap.spelling import failure, failure_of
 from yarpy.peers.ros2.dds.participant import POOL
 from yarpy.peers.ros2.key import domain
 from yarpy.peers.ros2.message.library import default_library
+from yarpy.peers.ros2.node.node import is_dds
 from yarpy.peers.ros2.token import SERVER, SUBSCRIBER
 from yarpy.peers.ros2.zenoh.participant import take_part
 
@@ -54,15 +55,10 @@ def _load(name: str) -> Any:
     return default_library().message(name)
 
 
-def _is_dds() -> bool:
-    """Return whether nodes speak DDS, as `yarpy.ros2.Node` decides it."""
-    return os.environ.get("RMW_IMPLEMENTATION", "") not in ("", "zenoh", "rmw_zenoh_cpp")
-
-
 def _target(side: Any, topic: str, type_: str | None, kind: str = "msg") -> str:
     """A topic or service as something to connect to."""
     node = re.sub(r"[^A-Za-z0-9_]+", "_", str(side.__name__)).strip("_") or "wrapyfi"
-    found = f"ros2{'+dds' if _is_dds() else ''}+node.{node}_{id(side):x}://{topic.strip('/')}"
+    found = f"ros2{'+dds' if is_dds() else ''}+node.{node}_{id(side):x}://{topic.strip('/')}"
     if type_ is None:
         return found
     package, _, name = type_.partition("/")
@@ -76,7 +72,7 @@ class _Watch:
         self._topic = f"/{topic.strip('/')}"
         self._awaited = kind
         self._closed = threading.Event()
-        self._dds = _is_dds()
+        self._dds = is_dds()
         self._part: Any = (POOL.take if self._dds else take_part)(domain(None))
 
     def wait(self, seconds: float) -> bool:

@@ -320,19 +320,26 @@ class Node:
         return item
 
 
-def chosen(said: str | None, environment: Mapping[str, str] = os.environ) -> Callable[..., Rmw]:
-    """Return what makes the layer for a node: the one that is said, else that of
-    RMW_IMPLEMENTATION, else Zenoh. Raises AddressError."""
+def is_dds(said: str | None = None, environment: Mapping[str, str] = os.environ) -> bool:
+    """Return whether a node speaks DDS, not Zenoh: what is said, else what RMW_IMPLEMENTATION
+    names, else Zenoh. Raises AddressError."""
     name = said or environment.get("RMW_IMPLEMENTATION") or "zenoh"
     if name in ("zenoh", "rmw_zenoh_cpp"):
-        from yarpy.peers.ros2.zenoh.rmw import ZenohRmw
-
-        return ZenohRmw
+        return False
     if name == "dds" or (said is None and name.startswith("rmw_")):
+        return True
+    raise AddressError(f'"{name[:80]}" carries no messages of ROS 2: it is zenoh or dds')
+
+
+def chosen(said: str | None, environment: Mapping[str, str] = os.environ) -> Callable[..., Rmw]:
+    """Return what makes the layer for a node, by `is_dds`. Raises AddressError."""
+    if is_dds(said, environment):
         from yarpy.peers.ros2.dds.rmw import DdsRmw
 
         return DdsRmw
-    raise AddressError(f'"{name[:80]}" carries no messages of ROS 2: it is zenoh or dds')
+    from yarpy.peers.ros2.zenoh.rmw import ZenohRmw
+
+    return ZenohRmw
 
 
 def _qos(said: str | Qos | None) -> Qos | None:
