@@ -14,6 +14,11 @@ def test_bytes_go_and_come_as_they_are() -> None:
     assert kind.__idl_typename__ == "sensor_msgs.msg.dds_.JointState_"
 
 
+def test_a_class_is_whole_before_threads_share_it() -> None:
+    kind = raw_class(default_library().message("sensor_msgs/JointState")._definition.struct)
+    assert all(kind.__idl__._xt_bytedata)
+
+
 def test_services_have_a_header() -> None:
     service = default_library().service("std_srvs/Trigger")
     made = raw_class(service.Request._definition.struct, "srv")

@@ -26,6 +26,7 @@ def raw_class(struct: Struct, kind: str = "msg") -> Any:
         return found
 
     made.serialize, made.deserialize = serialize, classmethod(deserialize)
+    made.__idl__.fill_type_data()  # else its first topic does, and fails where two threads make one
     return made
 
 
