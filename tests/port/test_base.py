@@ -146,6 +146,9 @@ def test_waiting_for_connections(names: LocalNames) -> None:
         assert in_.wait_for_inputs(timeout=5)
         assert out.wait_for_outputs(timeout=5)
         assert not out.wait_for_outputs(2, timeout=0.02)
+        for wrong in ("1", None, 1.5):
+            with pytest.raises(TypeError, match="`count` is a number of connections, not"):
+                in_.wait_for_inputs(wrong)
 
 
 def test_connection_to_oneself_can_be_made_and_ended(names: LocalNames) -> None:

@@ -187,11 +187,11 @@ class BasePort(Generic[P]):
 
     async def wait_for_outputs(self, count: int = 1, timeout: float | None = None) -> bool:
         """Wait until at least `count` ports receive what this one writes; False if time is over."""
-        return await self._until(lambda: len(self.outputs) >= count, timeout)
+        return await self._until(base.at_least(count, lambda: self.outputs), timeout)
 
     async def wait_for_inputs(self, count: int = 1, timeout: float | None = None) -> bool:
         """Wait until at least `count` ports write to this one; False if time is over."""
-        return await self._until(lambda: len(self.inputs) >= count, timeout)
+        return await self._until(base.at_least(count, lambda: self.inputs), timeout)
 
     async def _until(self, condition: Callable[[], bool], timeout: float | None) -> bool:
         port = self.port

@@ -5,8 +5,9 @@ from __future__ import annotations
 import sys
 import time
 import warnings
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sized
 from functools import partial
+from operator import index
 from typing import Any, Self
 
 from yarpy.carriers.web.http.page import Pages
@@ -25,6 +26,15 @@ from yarpy.route import masked
 from yarpy.scope import CONNECTING, Waiter, apart
 from yarpy.threads import Thread
 from yarpy.wire.message import Message
+
+
+def at_least(count: int, found: Callable[[], Sized]) -> Callable[[], bool]:
+    """Return what tells whether `found()` has `count`. Raises TypeError for what is no number."""
+    try:
+        wanted = index(count)
+    except TypeError:
+        raise TypeError(f"`count` is a number of connections, not {count!r}") from None
+    return lambda: len(found()) >= wanted
 
 
 class BasePort:
@@ -118,12 +128,12 @@ class BasePort:
     def wait_for_outputs(self, count: int = 1, timeout: float | None = None) -> bool:
         """Wait until at least `count` ports receive what this one writes; False if time is over.
         Raises PortClosed."""
-        return self._wait(lambda: len(self._hub.outputs.links) >= count, timeout)
+        return self._wait(at_least(count, lambda: self._hub.outputs.links), timeout)
 
     def wait_for_inputs(self, count: int = 1, timeout: float | None = None) -> bool:
         """Wait until at least `count` ports write to this one; False if time is over. Raises
         PortClosed."""
-        return self._wait(lambda: len(self.inputs) >= count, timeout)
+        return self._wait(at_least(count, lambda: self.inputs), timeout)
 
     @apart
     def _wait(self, condition: Callable[[], bool], timeout: float | None) -> bool:

@@ -52,6 +52,8 @@ def test_what_is_left_to_the_server(here):
     said = here("name", "register", "...", "tcp", "...", "12345")
     assert " ip 127.0.0.1 port 12345 type tcp" in said.out
     assert said.out.startswith("registration name /tmp/port/")
+    said = here("name", "register", "")
+    assert said.code == 1 and "the name is empty" in said.err
 
 
 def test_registering_claims_nothing_but_the_address(here, names):

@@ -24,6 +24,7 @@ def test_json(here):
 
 def test_name_is_needed(here):
     assert here("topic").code == 1
+    assert here("topic", "").code == 1
 
 
 def test_joins_ports(here, names):

@@ -155,6 +155,8 @@ def _print_list(contacts: Iterable[yarpy.Contact], arguments: tuple[str, ...]) -
 
 def parse_address(words: tuple[str, ...]) -> list[Any]:
     """`NAME [CARRIER [HOST [PORT]]]` as arguments of `register`; `...` is None."""
+    if not words[0]:
+        raise click.UsageError("the name is empty (an unset variable?): `...` is any free one")
     values: list[Any] = [None if word == "..." else word for word in words[1:4]]
     if len(values) == 3 and values[2] is not None:
         if not values[2].isdigit() or not 0 < int(values[2]) < 65536:

@@ -33,7 +33,7 @@ def command(
         else:
             print_line(f"Topics: {topics.to_text()}" if topics else "No topics")
         return 0
-    if name is None:
+    if not name:
         raise click.UsageError("Please supply the topic name (or: --list, --remove NAME)")
     if remove:
         if name not in ask_server(None, ["topic"]):

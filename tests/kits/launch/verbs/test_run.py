@@ -50,7 +50,8 @@ def test_what_is_not_done_is_told(node: Process, shell: CommandLine) -> None:
     said = shell.run("run", "--on", "/nodeA", "--cmd", "nosuch 1")
     assert said.returncode == 2 and "no program nosuch" in said.stderr
     assert shell.run("run", "--on", "/nobody", "--ps").returncode == 1
-    assert "--on /NAME" in shell.run("run", "--ps").stderr
+    for words in (["--ps"], ["--on", "", "--ps"], ["--server", ""]):
+        assert "--on /NAME" in shell.run("run", *words).stderr
     assert "say what" in shell.run("run", "--on", "/nodeA").stderr
 
 

@@ -37,3 +37,8 @@ def test_name_that_is_taken(here, names):
     with yarpy.Port("/pn/taken", names=names):
         said = here("panel", "/x", "--name", "/pn/taken")
     assert said.code == 1 and "is in use" in said.err
+
+
+def test_robot_without_a_name(here):
+    said = here("panel", "")
+    assert said.code == 1 and "an empty port name" in said.err

@@ -94,11 +94,11 @@ def command(
     as_json: bool,
 ) -> int:
     """Start programs here or on other computers, or be the server that does."""
-    if server is not None:
+    if server:
         return serve(server, allow, allow_env, end_programs, logger_ or "")
     if uuid is not None:
         return terminal.attach(uuid)
-    if on is None:
+    if not on:
         raise click.UsageError("say which server: --on /NAME, or be one: --server /NAME")
     from yarpy.kits.launch.run.client import RunClient
 

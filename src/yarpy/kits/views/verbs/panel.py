@@ -16,6 +16,7 @@ from yarpy.cli.browser import show_page
 from yarpy.cli.ports import open_another, open_port
 from yarpy.cli.service import server
 from yarpy.cli.stderr import warn
+from yarpy.contact import parse_contact
 from yarpy.platform import waiting
 
 NAME = "/panel"
@@ -32,6 +33,7 @@ def command(robot: str, name: str | None, no_browser: bool) -> int:
     """See and move a robot in a browser."""
     from yarpy.kits.views.panel import Panel
 
+    parse_contact(robot)
     names = server()
     opening = open_port if name else open_another
     with opening(yarpy.Port, name or NAME, callback=lambda message: None) as port:
