@@ -17,9 +17,11 @@ from support.wait import wait_until
 from yarpy import Bottle, RpcClient, Sound
 from yarpy.errors import LocalProtocolError
 from yarpy.kits import devices
+from yarpy.kits.devices.interfaces.joypad import Point
 
 pytestmark = pytest.mark.peer("g++")
 
+PAD = {"period": 10, "use_separate_ports": 1, "name": "/cpp"}
 EYE, ARM = devices.Description("eye", "camera"), devices.Description("arm", "board")
 
 
@@ -235,3 +237,17 @@ def test_descriptions_of_ours(newer: CppYarp) -> None:
     ):
         assert "not available" not in process.stdout, process.stdout + process.stderr
         assert device.devices() == [EYE, devices.Description("eye_twin", "camera")]
+
+
+def test_sticks_and_surfaces_of_cpp(newer: CppYarp) -> None:
+    """Its simulated joypad says three numbers of a finger, and none of a stick."""
+    with (
+        cpp_device(newer, "JoypadControlServer", subdevice="fakeJoypad", **PAD),
+        devices.Joypad.connect("/cpp") as client,
+    ):
+        assert client.stick_count() == 4 and client.stick_freedom(1) == 2
+        assert client.touch(1) == [Point(10.0, 11.0)]
+        assert (client.button(1), client.axis(1), client.hat(1)) == (10.0, 10.0, 10)
+        assert client.trackball(1) == Point(10.0, 11.0)
+        with pytest.raises(LocalProtocolError, match='"/cpp" refuses touch'):
+            client.touch(9)

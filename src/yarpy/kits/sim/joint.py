@@ -13,7 +13,7 @@ from typing import Final
 from yarpy.kits.sim.axis import Axis
 from yarpy.kits.sim.reference import Reference
 
-STIFFNESS: Final = 50.0  # rad/s, of the closed loop
+STIFFNESS: Final = 200.0  # rad/s, of the closed loop: slower ones swing with controllers in C++
 FRICTION: Final = 5.0  # 1/s, when nothing drives the joint
 
 _NEAR = 1e-6  # degrees, and degrees per second, within which the joint has arrived

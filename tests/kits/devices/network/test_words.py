@@ -21,6 +21,10 @@ EYE, ARM = Description("eye", "camera"), Description("arm", "board")
         (PAD["button"], "ok", (2,), "[ijpc] [get] [butn] [val] 2", (0.5,), "[ok] 0.5"),
         (PAD["trackball"], "ok", (0,), "[ijpc] [get] [trbl] [val] 0", (Point(1.0, 2.0),),
          "[ok] 1.0 2.0"),
+        (PAD["stick"], "ok", (2, 0), "[ijpc] [get] [stck] [val] [polr] 2", (Point(1.0, 2.0), 0),
+         "[ok] 1.0 2.0 0"),
+        (PAD["touch"], "ok", (1,), "[ijpc] [get] [tuch] [val] 1", ([Point(1.0, 2.0), Point()],),
+         "[ok] 1.0 2.0 0.0 0.0"),
         (ROBOT["devices"], "list", (), "[irob] [get] [all]", ([EYE, ARM],),
          "[ok] (eye camera arm board)"),
         (ROBOT["devices_of"], "list", ("x",), "[irob] [get] [type] x", ([],), "[ok] ()"),
@@ -47,6 +51,16 @@ def test_both_ways(
     assert words.results(each, form, found) == results
     failed = words.answer(each, form, None)
     assert words.results(each, form, failed) is None
+
+
+def test_what_servers_of_cpp_leave_out_or_add() -> None:
+    found = words.results(PAD["stick"], "ok", Bottle.from_text("[ok] 1.0 2.0"))
+    assert found == (Point(1.0, 2.0), 0)
+    found = words.results(PAD["touch"], "ok", Bottle.from_text("[ok] 10.0 11.0 12.0"))
+    assert found == ([Point(10.0, 11.0)],)
+    assert words.results(PAD["button"], "ok", Bottle()) is None
+    with pytest.raises(DecodeError, match="expected one of polr cart, got 'x'"):
+        words.arguments(PAD["stick"], Bottle.from_text("[ijpc] [get] [stck] [val] [x] 2"))
 
 
 def test_what_is_about_no_member() -> None:

@@ -15,8 +15,8 @@ def test_state() -> None:
     pad = SimulatedJoypad()
     pad.state.sticks[1] = Point(0.0, 0.5)
     pad.state.buttons[3] = 1.0
-    assert pad.stick(1) == (Point(0.0, 0.5), 0)
-    assert pad.stick(1, 1)[0].x == 0.5 and 1.57 < pad.stick(1, 1)[0].y < 1.58
+    assert pad.stick(1) == (Point(0.0, 0.5), 1)
+    assert pad.stick(1, 0)[0].x == 0.5 and 1.57 < pad.stick(1, 0)[0].y < 1.58
     assert pad.button(3) == 1.0 and pad.axis_count() == 6 and pad.touch(0) == []
     assert pad.everything() == pad.state
     for ask in (pad.button, pad.axis, pad.hat, pad.trackball, pad.stick_freedom):

@@ -191,12 +191,13 @@ class Joypad(Interface):
         """Return where an axis is."""
         raise NotImplementedError
 
-    @call("getStick", cpp="getStick")
-    def stick(self, stick: i32, mode: i32 = 0) -> tuple[Point, i16]:
-        """Return where a stick is, and the mode. mode: 0 for x and y, 1 for radius and angle."""
+    @call("getStick", cpp="getStick", words="ijpc get stck val mode=polr|cart")
+    def stick(self, stick: i32, mode: i32 = 1) -> tuple[Point, i16]:
+        """Return where a stick is, and the mode, which servers of YARP 3 do not say (0). mode: 1
+        for x and y, 0 for radius and angle (radians)."""
         raise NotImplementedError
 
-    @call("getTouch", cpp="getTouch")
+    @call("getTouch", cpp="getTouch", words="ijpc get tuch val")
     def touch(self, surface: i32) -> list[Point]:
         """Return where fingers touch a surface."""
         raise NotImplementedError

@@ -60,10 +60,13 @@ def call(
 
     status: False where no status stands in front of the results. boxed: YARP 4 has the status in a
     list of its own where there are no results. whole: the name travels as one word. words: how
-    programs of YARP 3 ask for it, where they do not by Thrift (`network.words`).
+    programs of YARP 3 ask for it, where they do not by Thrift (`network.words`); `mode=polr|cart`
+    at their end: there stands the last argument, by one of these words.
     """
+    spoken, _, choice = words.partition("=")
     facts = {"function": function, "cpp": cpp, "status": status, "boxed": boxed}
-    return _mark(**facts, whole=whole, words=tuple(words.split()))
+    facts["words"] = tuple(spoken.split()[: -1 if choice else None])
+    return _mark(**facts, whole=whole, choice=tuple(filter(None, choice.split("|"))))
 
 
 def sent(port: str) -> Callable[[F], F]:
@@ -104,6 +107,7 @@ class Member:
     boxed: bool = False
     whole: bool = False
     words: tuple[str, ...] = ()
+    choice: tuple[str, ...] = ()
     copy: str = ""
     source: str = ""
     also: str = ""

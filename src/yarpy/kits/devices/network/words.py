@@ -8,9 +8,10 @@
     WORDS = "list"  [irob] [get] [all]            [ok] (eye frameGrabber arm controlBoard)
 
 Rules: pure functions of lists. The second word is the verb: `get`, `set` or `has`. What fails is
-`[fail]`, or `[visd] [set] 0`. A struct is its fields, the first `SPOKEN` if it says so; a list of
-structs is how many there are, then all fields (`list`: one list of all fields); a table of
-properties is one list. Results that are not sent have their defaults.
+`[fail]`, or `[visd] [set] 0`; C++ answers `ok` by nothing then. A struct is its fields, the first
+`SPOKEN` if it says so; a list of structs is how many there are, then all fields (`list`: one list
+of all fields; `ok`: the fields alone, and what is left of them is not read); a table of properties
+is one list. Results that are not sent have their defaults.
 
 Source: RGBDSensor_nws_yarp, JoypadControlServer and RobotDescriptionServer of YARP 3.9.
 """
@@ -56,11 +57,20 @@ def arguments(each: Member, request: Sequence[Any]) -> tuple[Any, ...]:
     """Return the arguments in a request for a member. DecodeError."""
     elements = _Elements(request[len(each.words) :])
     takes = [*each.signature.parameters.values()][1:]
-    return tuple(elements.take(one.annotation) for one in takes)
+    if not each.choice:
+        return tuple(elements.take(one.annotation) for one in takes)
+    chosen = word(elements.take(str))
+    if chosen not in each.choice:
+        raise DecodeError(f"expected one of {' '.join(each.choice)}, got {chosen[:40]!r}")
+    first = (elements.take(one.annotation) for one in takes[:-1])
+    return (*first, each.choice.index(chosen))
 
 
 def question(each: Member, values: Sequence[Any]) -> Bottle:
     """Return the request for a member."""
+    if each.choice:
+        *values, chosen = values
+        values = [Vocab(each.choice[chosen]), *values]
     return Bottle([*map(Vocab, each.words), *_flat(values)])
 
 
@@ -71,7 +81,7 @@ def answer(each: Member, form: str, results: Sequence[Any] | None) -> Bottle:
     if form == "list":
         return Bottle([FAIL] if results is None else [_OK, *(Bottle(_flat(e)) for e in results)])
     if form == "ok":
-        return Bottle([FAIL] if results is None else [_OK, *_flat(results)])
+        return Bottle([FAIL] if results is None else [_OK, *_flat(_uncounted(results))])
     if verb == "set":
         if head[0] == "fgc":
             return Bottle([FAIL if results is None else _NAK])
@@ -87,7 +97,7 @@ def results(each: Member, form: str, found: Sequence[Any]) -> tuple[Any, ...] | 
     """Return the results in an answer; None if it failed. DecodeError."""
     verb = each.words[1]
     first = word(found[0]) if found else ""
-    if first == "fail":
+    if first == "fail" or (form == "ok" and first != "ok"):
         return None
     if form == "list":
         return tuple(_listed(one, found[at:]) for at, one in enumerate(each.results, 1))
@@ -98,7 +108,14 @@ def results(each: Member, form: str, found: Sequence[Any]) -> tuple[Any, ...] | 
     else:
         begin = 4 if verb == "has" else len(each.words)
     elements = _Elements(found[begin:])
+    if form == "ok" and get_origin(each.results[0]) is list:
+        return (elements.rest(*get_args(each.results[0])),)
     return tuple(elements.take(annotation, True) for annotation in each.results)
+
+
+def _uncounted(values: Iterable[Any]) -> Iterable[Any]:
+    """The values, lists as their elements."""
+    return (one for each in values for one in (each if isinstance(each, list) else [each]))
 
 
 def _flat(values: Iterable[Any]) -> list[Any]:
@@ -162,6 +179,11 @@ class _Elements:
             pairs = self._next()
             return Property.from_bytes(Bottle(pairs if isinstance(pairs, list) else []).to_bytes())
         return self._like(annotation())
+
+    def rest(self, struct: Any) -> list[Any]:
+        """Take as many structs as are left."""
+        count = len(self._elements) // len(_spoken(struct))
+        return [self.take(struct) for _ in range(count)]
 
     def _like(self, default: Any) -> Any:
         """Take a value of the kind of this one."""

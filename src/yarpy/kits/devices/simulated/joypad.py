@@ -83,10 +83,10 @@ class SimulatedJoypad:
         """Return where it is."""
         return float(self._one(self.state.axes, axis, "axis"))
 
-    def stick(self, stick: int, mode: int = 0) -> tuple[Point, int]:
+    def stick(self, stick: int, mode: int = 1) -> tuple[Point, int]:
         """Return where it is."""
         found = self._one(self.state.sticks, stick, "stick")
-        if mode == 1:
+        if mode == 0:
             found = Point(math.hypot(found.x, found.y), math.atan2(found.y, found.x))
         return found, mode
 
