@@ -52,7 +52,8 @@ class Delivery:
     lossy connection, what does not leave in its writer's thread without waiting is dropped, unless
     the backlog has room. connectionless: the peer must be told of the end in some other way.
     broadcast: one send reaches every receiver of the group. attentive: what a reader says to
-    `listen` is to be heard at once.
+    `listen` is to be heard at once. side_by_side: a sender may have several connections; without
+    it a new one of the same name takes the place of what is left of an earlier one.
     """
 
     lossy: bool = False
@@ -64,6 +65,7 @@ class Delivery:
     connectionless: bool = False
     broadcast: bool = False
     attentive: bool = False
+    side_by_side: bool = False
 
 
 @dataclass(frozen=True, slots=True)

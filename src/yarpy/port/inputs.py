@@ -130,7 +130,8 @@ class Inputs:
     def take(self, link: Inbound) -> None:
         """Make an open connection one of these, to be served next.
 
-        It replaces an earlier one of the same sender, and waits until that has ended.
+        It replaces an earlier one of the same sender, unless its carrier has several side by side,
+        and waits until that has ended.
         Raises PortClosed, or what a monitor raises that cannot start; the connection is then
         closed.
         """
@@ -145,9 +146,9 @@ class Inputs:
         source, idle = link.route.source, None
         while True:
             with self.lock:  # of connections that come at once each replaces the one before it
-                rooted = source.startswith("/")
+                alone = source.startswith("/") and not link.carrier.delivery.side_by_side
                 older, ended = (
-                    tuple(item for item in items if rooted and item.route.source == source)
+                    tuple(item for item in items if alone and item.route.source == source)
                     for items in (self.links, self._telling)
                 )
                 others = tuple(item for item in self.links if item not in older)

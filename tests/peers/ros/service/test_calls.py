@@ -92,6 +92,36 @@ def test_threads_that_call_at_once_share_a_connection(
         assert len(server.inputs) == 1
 
 
+THREADS = """
+import rospy, threading
+from std_srvs.srv import Trigger
+rospy.init_node("many", disable_signals=True)
+rospy.wait_for_service("/slow_service")
+def ask(persistent):
+    try:
+        said = rospy.ServiceProxy("/slow_service", Trigger, persistent)()
+        print("heard", said.message, flush=True)
+    except rospy.ServiceException as error:
+        print("heard", error, flush=True)
+for number in range(4):
+    threading.Thread(target=ask, args=(number % 2 == 0,)).start()
+"""
+
+
+def test_threads_of_a_node_of_rospy_are_answered_side_by_side(graph: RosGraph) -> None:
+    """They have a connection each, all of one name; none takes the place of another."""
+    together = threading.Barrier(4)
+
+    def answer(asked: object) -> list[object]:
+        together.wait(HANG)
+        return [True, "yes"]
+
+    with Node("/slow") as node:
+        node.service("/slow_service", TRIGGER, answer)
+        with graph.python(THREADS) as asking:
+            asking.wait_line("^heard yes$", stream="out", count=4)
+
+
 def test_a_call_waits_for_its_turn_no_longer_than_it_may(graph: RosGraph) -> None:
     go, asked = threading.Event(), threading.Event()
 

@@ -49,7 +49,7 @@ class RosSrv(Carrier):
     words = ("service.NAME", "package.NAME", "raw.0", "raw.1")
     acks = True
     reaches = SERVER
-    delivery = Delivery(coalesces=False)
+    delivery = Delivery(coalesces=False, side_by_side=True)  # a node asks from all its threads
     limits = Limits(ack_timeout=60.0)
 
     def __init__(self, route: Route, fields: Header | None = None) -> None:
