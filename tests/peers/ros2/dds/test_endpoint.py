@@ -102,6 +102,18 @@ def test_any_subscriber_hears_a_publisher(
     peer.do("close", name)
 
 
+def test_the_first_message_reaches_who_asks_for_kept_ones(peer: Peer, topic: str) -> None:
+    """Its writer comes after it, and is not waited for: nobody else hears the one before."""
+    name = f"r{topic}"
+    with yarpy.Port("/out") as out:
+        out.connect(f"ros2+dds:/{topic}{TYPE}")
+        peer.do("reader", name, topic, "reliable", "transient_local", 10)
+        wait_until(lambda: peer.do("events", name)[0]["alive"] == 1)  # type: ignore[index]
+        out.write("map")
+        wait_until(lambda: peer.heard(name) == ["map"])
+    peer.do("close", name)
+
+
 # -- several --------------------------------------------------------------------------------------
 
 

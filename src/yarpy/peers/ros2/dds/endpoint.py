@@ -201,7 +201,7 @@ class DdsPublisher(DdsEndpoint):
         sample = self._class.__new__(self._class)
         body = item.body
         sample.body = body[0] if len(body) == 1 else b"".join(body)
-        if self._next is not None and time.monotonic() >= self._due:
+        if self._next is not None and self._is_due():
             self._take_over()
         self._entity.write(sample, item.time or time.time_ns())
 
@@ -217,6 +217,11 @@ class DdsPublisher(DdsEndpoint):
         made = self._show(self._made())
         self._owned = (made, *self._owned)
         self._due, self._next = time.monotonic() + CHANGING, made
+
+    def _is_due(self) -> bool:
+        """Return whether all can have heard of the new writer. Where nobody hears the present one,
+        what it would write is for nobody."""
+        return time.monotonic() >= self._due or not self._entity.get_matched_subscriptions()
 
     def _take_over(self) -> None:
         with self._opening:
