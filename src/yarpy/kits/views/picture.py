@@ -80,8 +80,8 @@ class Picture:
             image = message.as_(yarpy.Image)
             shown, span = visible(image)
         except ValueError as error:  # DecodeError is one
-            self._others += 1
             self._complaint = f"{message.source or 'somebody'}: {_described(message, error)}"
+            self._others += 1
             return
         self._frames += 1
         self._times.append(time.monotonic())
