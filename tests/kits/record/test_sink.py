@@ -2,12 +2,14 @@
 
 from pathlib import Path
 
+import pytest
 from support.recordings import START, fill, payload_of
 
 from yarpy import record
+from yarpy.errors import LocalProtocolError
 from yarpy.kits.record.dumper.writer import DumperWriter
 from yarpy.kits.record.mcap.writer import McapWriter
-from yarpy.kits.record.sink import NullSink, Tee
+from yarpy.kits.record.sink import NullSink, Tee, named
 
 
 def test_both(tmp_path: Path) -> None:
@@ -23,6 +25,12 @@ def test_both(tmp_path: Path) -> None:
     with record.open(tmp_path / "x.mcap") as one, record.open(tmp_path / "x") as other:
         assert [found.value for found in one] == [found.value for found in other]
         assert len(one.notes()) == 1
+
+
+@pytest.mark.parametrize("path", ["", ".", "..", "a/..", "/"])
+def test_a_path_without_a_name(path: str) -> None:
+    with pytest.raises(LocalProtocolError, match="no name of a recording"):
+        named(path)
 
 
 def test_nowhere() -> None:

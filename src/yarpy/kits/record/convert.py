@@ -26,7 +26,7 @@ from yarpy.kits.record.mcap.layout import Damaged, Other
 from yarpy.kits.record.mcap.storage import FOREVER, McapStorage
 from yarpy.kits.record.mcap.writer import McapWriter
 from yarpy.kits.record.recording import Recording
-from yarpy.kits.record.sink import ENDING
+from yarpy.kits.record.sink import ENDING, named
 
 if TYPE_CHECKING:
     from yarpy.kits.record.matlab.writer import MatWriter
@@ -60,9 +60,10 @@ def convert(
     `.json`, with what is numbers.
     start, duration: the seconds that are left out at the beginning, and those that are written.
     rates: the largest number of messages a second, by patterns of names: `{"/cam/*": 10}`.
-    Raises FileExistsError, OSError; UnknownName for a port that is not in it, UnknownPlugin.
+    Raises FileExistsError, OSError; UnknownName for a port that is not in it, UnknownPlugin,
+    LocalProtocolError for a path without a name.
     """
-    known = recording.ports
+    where, known = named(path), recording.ports
     for name in ports or ():
         if name not in known:
             raise UnknownName(f'"{name}" was not recorded: there are {" ".join(known)}')
@@ -71,15 +72,14 @@ def convert(
     end = FOREVER if duration is None else begin + round(duration * SECOND)
     sink: DumperWriter | McapWriter | BagWriter | MatWriter
     if form == "dumper":
-        sink = DumperWriter(path, times)
+        sink = DumperWriter(where, times)
     elif form == "robometry":
         from yarpy.kits.record.matlab.writer import MatWriter
 
-        sink = MatWriter(path, _facts(recording))
+        sink = MatWriter(where, _facts(recording))
     elif form != "mcap":
-        sink = BagWriter(path, 1 if form == "bag1" else 2)
+        sink = BagWriter(where, 1 if form == "bag1" else 2)
     else:
-        where = Path(path)
         where = where if where.suffix == ENDING else where.with_name(f"{where.name}{ENDING}")
         where.parent.mkdir(parents=True, exist_ok=True)
         sink = McapWriter(where, compression, _facts(recording))

@@ -20,6 +20,14 @@ Format: TypeAlias = Literal["mcap", "dumper", "both"]
 Opener: TypeAlias = "Callable[[Path], Sink]"
 
 
+def named(path: str | Path) -> Path:
+    """Return the path of a new recording. Raises LocalProtocolError for one without a name."""
+    found = Path(path)
+    if found.name in ("", ".."):
+        raise LocalProtocolError(f'"{path}" is no name of a recording: try {found / "walk"}')
+    return found
+
+
 class Sink(Protocol):
     """A file or folder that is being written."""
 

@@ -6,7 +6,7 @@ from pathlib import Path
 import pytest
 
 import yarpy
-from yarpy.errors import AddressError
+from yarpy.errors import AddressError, LocalProtocolError
 from yarpy.kits.record.capture.opening import open_port, without_ending
 
 
@@ -19,6 +19,8 @@ def names():
 def test_names() -> None:
     assert without_ending("a/walk.mcap") == Path("a/walk")
     assert without_ending(Path("walk.v2")) == Path("walk.v2")
+    with pytest.raises(LocalProtocolError, match="no name of a recording"):
+        without_ending(".")
     assert re.fullmatch(r"record-\d{4}(-\d\d){5}", str(without_ending(None)))
 
 

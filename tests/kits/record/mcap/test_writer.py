@@ -130,3 +130,13 @@ def test_without_scattered_writes(tmp_path: Path, monkeypatch: pytest.MonkeyPatc
 def test_a_compression_that_nobody_knows(tmp_path: Path) -> None:
     with pytest.raises(LocalProtocolError, match='no compression "rar": it is one of none, lz4'):
         McapWriter(tmp_path / "x.mcap", "rar")
+
+
+def test_a_full_disk_at_the_beginning(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    def full(*_: object) -> int:
+        raise OSError(errno.ENOSPC, "No space left on device")
+
+    monkeypatch.setattr(os, "writev", full)
+    with pytest.raises(OSError, match=r"No space left on device: '.*x\.mcap'"):
+        McapWriter(tmp_path / "x.mcap")
+    assert not [*tmp_path.iterdir()]

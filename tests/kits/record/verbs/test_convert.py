@@ -22,6 +22,13 @@ def test_there_and_back(here, tmp_path) -> None:
     assert said.code == 1 and "is there already: choose another name" in said.err
 
 
+@pytest.mark.parametrize("form", ["mcap", "dumper", "bag1", "bag2", "robometry"])
+def test_a_path_without_a_name(form, here, tmp_path) -> None:
+    path = recorded(tmp_path / "x.mcap")
+    said = here("convert", str(path), "-o", ".", "--format", form)
+    assert (said.code, said.out) == (1, "") and "is no name of a recording" in said.err
+
+
 def test_what_is_damaged_is_told(here, tmp_path) -> None:
     path = recorded(tmp_path / "x.mcap")
     path.write_bytes(path.read_bytes()[:400])

@@ -12,7 +12,7 @@ from pathlib import Path
 from typing import Any
 
 from yarpy.errors import AddressError
-from yarpy.kits.record.sink import ENDING
+from yarpy.kits.record.sink import ENDING, named
 from yarpy.names.base import NameClient
 from yarpy.port.assembly import open_hub
 from yarpy.port.connection import ConnectionEvent
@@ -21,10 +21,10 @@ from yarpy.port.port import MessagePort
 
 
 def without_ending(path: str | Path | None) -> Path:
-    """Return the path of a recording; None is the date."""
+    """Return the path of a recording; None is the date. Raises LocalProtocolError."""
     if path is None:
         return Path(time.strftime("record-%Y-%m-%d-%H-%M-%S"))
-    found = Path(path)
+    found = named(path)
     return found.with_suffix("") if found.suffix == ENDING else found
 
 

@@ -91,9 +91,15 @@ class McapWriter:
         self._attached: list[Any] = []
         self._notes = 0
         self._begin_chunk()
-        self._append([MAGIC, self._encoded(records.Header("", f"yarpy {__version__}"))])
-        if metadata is not None:
-            self.add_metadata("yarpy", metadata)
+        try:
+            self._append([MAGIC, self._encoded(records.Header("", f"yarpy {__version__}"))])
+            if metadata is not None:
+                self.add_metadata("yarpy", metadata)
+        except OSError:
+            self._file.close()
+            with suppress(OSError):
+                self.path.unlink()  # nothing is in it
+            raise
 
     def _begin_chunk(self) -> None:
         self._parts: list[Bytes] = []
@@ -309,7 +315,8 @@ class McapWriter:
         """Write all of it, or nothing."""
         try:
             written = write_all(self._file, parts)
-        except OSError:
+        except OSError as error:
+            error.filename = str(self.path)
             with suppress(OSError):
                 self._file.truncate(self.size)
                 self._file.seek(self.size)
