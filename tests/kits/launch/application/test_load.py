@@ -1,5 +1,6 @@
 """Whole applications: nested ones, prefixes, labels, what only the whole shows."""
 
+import os
 from pathlib import Path
 
 import pytest
@@ -78,6 +79,13 @@ def test_one_that_is_nowhere(tmp_path: Path) -> None:
     found = said(tmp_path / "a.xml")
     text = 'error: no file beside this one has the application "Iner": did you mean "Inner"?'
     assert found == [f"a.xml:{line}:1: {text}" for line in (3, 4)]
+
+
+@pytest.mark.skipif(not hasattr(os, "mkfifo"), reason="this system has no pipes in its folders")
+def test_a_pipe_in_the_folder_is_no_application(tmp_path: Path) -> None:
+    write(tmp_path, b_xml=OUTER, c_xml=INNER)
+    os.mkfifo(tmp_path / "a.xml")  # opening it would wait for a writer
+    assert load(tmp_path / "b.xml").problems == []
 
 
 def test_circles_of_files_end(tmp_path: Path) -> None:

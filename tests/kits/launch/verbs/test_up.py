@@ -3,10 +3,11 @@
 import json
 import os
 import signal
+import subprocess
 import sys
 
 import pytest
-from support.wait import wait_until
+from support.wait import HANG, wait_until
 
 from yarpy.kits.launch.supervise import process
 
@@ -177,3 +178,28 @@ def test_programs_at_a_server_that_stands_still_for_a_while(cli) -> None:
             up.signal(signal.SIGINT)
             assert up.wait() == 0
         assert not alive(told["pid"])
+
+
+def test_the_end_of_its_terminal_is_that_of_all(cli) -> None:
+    path = write(cli, 'name = "closed"\n[programs]\nnap = "sleep 1000"')
+    ours, theirs = os.openpty()
+    heard = (
+        "import signal; signal.signal(1, signal.SIG_DFL); from yarpy.cli.start import main; main()"
+    )
+    command = [sys.executable, "-c", heard, "up", path]
+    with subprocess.Popen(
+        command, stdin=theirs, stdout=theirs, stderr=theirs, cwd=cli.home, env=cli.environment
+    ) as up:
+        try:
+            os.close(theirs)
+            shown = b""
+            while b"running" not in shown:
+                shown += os.read(ours, 4096)
+            (pid,) = [one["pid"] for one in status(cli)["programs"]]
+            os.close(ours)
+            for _ in range(2):  # one from the shell, one from the system
+                up.send_signal(signal.SIGHUP)
+            up.wait(HANG)
+        finally:
+            up.kill()
+    assert not alive(pid)

@@ -124,7 +124,7 @@ class _Loading:
                 files = sorted(folder.iterdir())
             except OSError:
                 files = []
-            for file in [one for one in files if one.name.lower().endswith(_XML)][
+            for file in [one for one in files if one.name.lower().endswith(_XML) and one.is_file()][
                 :APPLICATION_FILES
             ]:
                 try:

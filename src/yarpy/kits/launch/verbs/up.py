@@ -25,7 +25,7 @@ import sys
 import threading
 import time
 from collections.abc import Iterable
-from contextlib import ExitStack
+from contextlib import ExitStack, suppress
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final
@@ -248,11 +248,12 @@ def _run(application: Application, file: Path, wish: _Wish, told: str) -> int:
                 _follow(supervisor, printer, live, wish.stop_on_failure)
         except Interrupted:
             pass
-        _at_once(supervisor)
-        if watch is not None:
-            watch.close()
-        left = supervisor.stop()
-        all_over = True
+        finally:  # whatever has gone wrong
+            _at_once(supervisor)
+            if watch is not None:
+                watch.close()
+            left = supervisor.stop()
+            all_over = True
     finally:
         control.close()
         serving.close()
@@ -293,18 +294,20 @@ def _show(url: str, printer: _Printer) -> None:
 
 
 def _at_once(supervisor: Supervisor) -> None:
-    """Let another signal kill what still runs, instead of this process alone."""
+    """Let another signal kill what still runs, instead of this process alone. A hangup does not:
+    the end of a terminal sends several."""
 
     def kill(number: int, frame: object) -> None:
         threading.Thread(target=supervisor.kill, name="yarpy kill", daemon=True).start()
 
-    for name in ("SIGINT", "SIGTERM", "SIGHUP"):
-        if hasattr(signal, name):
-            signal.signal(getattr(signal, name), kill)
+    for number in (signal.SIGINT, signal.SIGTERM):
+        signal.signal(number, kill)
+    if hasattr(signal, "SIGHUP"):
+        signal.signal(signal.SIGHUP, signal.SIG_IGN)
 
 
 def _follow(supervisor: Supervisor, printer: _Printer, live: bool, stop_on_failure: bool) -> None:
-    """Until all has ended, or somebody wants it to."""
+    """Until all has ended, or somebody wants it to; a screen that is gone is somebody, too."""
 
     def over() -> bool:
         failed = stop_on_failure and bool(supervisor.failed)
@@ -320,7 +323,7 @@ def _follow(supervisor: Supervisor, printer: _Printer, live: bool, stop_on_failu
     from yarpy.kits.launch.console.look import KEYS, text
 
     console = Console(highlight=False)
-    with Live(console=console, auto_refresh=False, screen=True) as screen:
+    with suppress(OSError), Live(console=console, auto_refresh=False, screen=True) as screen:
         while True:
             size = shutil.get_terminal_size((80, 24))
             keys = f"{KEYS}; {printer.page}" if printer.page else KEYS
