@@ -74,6 +74,38 @@ def test_a_player(names, tmp_path: Path) -> None:
         assert ask(names, words, ["quit"]) == [["ok"]] and not player.play()
 
 
+def test_a_player_in_the_words_of_cpp(names, tmp_path: Path) -> None:
+    with (
+        record.open(recorded(tmp_path / "x.mcap", 101)) as found,
+        record.Player(found, ["/a"], names=names) as player,
+    ):
+        words = player_commands(player)
+        assert ask(names, words, ["getAllParts"], ["getPortName", "/a"]) == [
+            ["ok", ["/a"]],
+            ["ok", "/a"],
+        ]
+        assert ask(names, words, ["setPortName", "/a", "/b"], ["getPortName", "/a"]) == [
+            ["ok"],
+            ["ok", "/b"],
+        ]
+        assert ask(names, words, ["forward", 50], ["backward"], ["getSliderPercentage"]) == [
+            ["ok"],
+            ["ok"],
+            ["ok", 45],
+        ]
+        assert player.position == pytest.approx(0.45)
+        for line, why in (
+            (["forward", 60], "1.1 s is not within 1.0 s"),
+            (["disable", "/c"], '"/c" is not played: there are /a'),
+            (["repeat", "maybe"], "'maybe' is neither 0 nor 1"),
+        ):
+            assert ask(names, words, line) == [["fail", why]]
+        ask(names, words, ["disable", "/a"], ["repeat"], ["setStrict"])
+        assert (player.muted, player.loop, player.reader_timeout) == ({"/a"}, True, 10.0)
+        ask(names, words, ["enable", "/a"], ["repeat", 0], ["setStrict", 0])
+        assert (player.muted, player.loop, player.reader_timeout) == (set(), False, 0.5)
+
+
 def test_what_is_no_word(names, tmp_path: Path) -> None:
     with (
         record.open(recorded(tmp_path / "x.mcap")) as found,
@@ -84,7 +116,7 @@ def test_what_is_no_word(names, tmp_path: Path) -> None:
             ["seek", "far"], ["seek", [1]], ["seek", float("nan")], ["loop", 1, 1], ["loop", "x"],
         )  # fmt: skip
         assert [answer[0] for answer in answers] == ["fail"] * 10
-        assert answers[0][1].startswith("no word 'fly': there are getProgress")
+        assert answers[0][1].startswith("no word 'fly': there are backward")
         assert answers[1][1] == "seek SECONDS"
         (told,) = ask(names, player_commands(player), ["help"])
         assert "seek" in told and told[0] == "ok"

@@ -4,7 +4,11 @@
     play     play  pause  resume  step  seek SECONDS  mark TEXT  rate N  loop [BEGIN END]  stop
              status  help
 
-and, of C++ yarpdataplayer, `getStatus`, `getProgress`, `getSpeed`, `setSpeed N`, `quit`.
+and those of C++ yarpdataplayer that mean something where parts are ports:
+
+    getStatus  getProgress  getSliderPercentage  getSpeed  setSpeed N  forward [PERCENT]
+    backward [PERCENT]  repeat [0|1]  setStrict [0|1]  getAllParts  enable PORT  disable PORT
+    getPortName PORT  setPortName PORT NEW  quit
 
 Rules: the answer is `[ok]` and what was asked for, or `[fail]` and why. Nobody can name a file.
 """
@@ -13,17 +17,20 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Mapping
 from inspect import signature
-from typing import Any, TypeAlias
+from typing import Any, Final, TypeAlias
 
 from yarpy.data.bottle import Bottle
 from yarpy.data.text import plain_text
 from yarpy.data.value import Vocab
-from yarpy.errors import YarpError
+from yarpy.errors import LocalProtocolError, UnknownName, YarpError
 from yarpy.kits.record.capture.recorder import Recorder
-from yarpy.kits.record.playback.player import Player
+from yarpy.kits.record.playback.player import READER_TIMEOUT, Player
 from yarpy.wire.message import Message
 
 Act: TypeAlias = Callable[..., object]
+
+JUMP: Final = 5.0  # percent
+STRICT: Final = 10.0  # seconds that a reader may keep a message waiting where nothing is to be lost
 
 
 class Commands:
@@ -102,8 +109,18 @@ def recorder_commands(recorder: Recorder, stop: Callable[[], object]) -> Command
     )
 
 
+def _flag(value: object) -> bool:
+    if value not in (0, 1):
+        raise LocalProtocolError(f"{value!r} is neither 0 nor 1")
+    return bool(value)
+
+
 def player_commands(player: Player) -> Commands:
     """Return what a player is told."""
+    return Commands({**_player_words(player), **_words_of_cpp(player)})
+
+
+def _player_words(player: Player) -> dict[str, Act]:
 
     def rate(n: float) -> None:
         player.rate = float(n)
@@ -120,12 +137,9 @@ def player_commands(player: Player) -> Commands:
         else:
             player.loop_range(float(begin), player.length if end is None else float(end))
 
-    def state() -> str:
-        return "paused" if player.paused else "playing"
-
     def status() -> list[Any]:
         return [
-            ["state", state()],
+            ["state", _state(player)],
             ["position", player.position],
             ["length", player.length],
             ["rate", player.rate],
@@ -134,24 +148,69 @@ def player_commands(player: Player) -> Commands:
             ["dropped", player.dropped],
         ]
 
-    return Commands(
-        {
-            "play": player.resume,
-            "resume": player.resume,
-            "pause": player.pause,
-            "step": player.step,
-            "seek": seek,
-            "mark": mark,
-            "loop": loop,
-            "rate": rate,
-            "setSpeed": rate,
-            "getSpeed": lambda: player.rate,
-            "getStatus": state,
-            "getProgress": lambda: (
-                100 * player.position / player.length if player.length else 100.0
-            ),
-            "status": status,
-            "stop": player.stop,
-            "quit": player.stop,
-        }
-    )
+    return {
+        "play": player.resume,
+        "resume": player.resume,
+        "pause": player.pause,
+        "step": player.step,
+        "seek": seek,
+        "mark": mark,
+        "loop": loop,
+        "rate": rate,
+        "status": status,
+        "stop": player.stop,
+        "quit": player.stop,
+    }
+
+
+def _state(player: Player) -> str:
+    return "paused" if player.paused else "playing"
+
+
+def _words_of_cpp(player: Player) -> dict[str, Act]:
+    def speed(n: float) -> None:
+        player.rate = float(n)
+
+    def progress() -> float:
+        return 100 * player.position / player.length if player.length else 100.0
+
+    def forward(percent: float = JUMP) -> None:
+        position = player.position + player.length * float(percent) / 100
+        if not 0 <= position <= player.length:
+            raise LocalProtocolError(f"{position:.1f} s is not within {player.length:.1f} s")
+        player.seek(position)
+
+    def backward(percent: float = JUMP) -> None:
+        forward(-float(percent))
+
+    def repeat(on: int = 1) -> None:
+        player.loop = _flag(on)
+
+    def strict(on: int = 1) -> None:
+        player.reader_timeout = STRICT if _flag(on) else READER_TIMEOUT
+
+    def known(port: object) -> str:
+        found = plain_text(port)
+        if found not in player.ports:
+            raise UnknownName(f'"{found}" is not played: there are {" ".join(player.ports)}')
+        return found
+
+    def rename(port: str, new: str) -> None:
+        player.rename(known(port), plain_text(new))
+
+    return {
+        "getStatus": lambda: _state(player),
+        "getProgress": progress,
+        "getSliderPercentage": lambda: int(progress()),
+        "getSpeed": lambda: player.rate,
+        "setSpeed": speed,
+        "forward": forward,
+        "backward": backward,
+        "repeat": repeat,
+        "setStrict": strict,
+        "getAllParts": lambda: [[*player.ports]],
+        "enable": lambda port: player.muted.discard(known(port)),
+        "disable": lambda port: player.muted.add(known(port)),
+        "getPortName": lambda port: player.ports[known(port)],
+        "setPortName": rename,
+    }

@@ -20,7 +20,7 @@ from support.wait import HANG, wait_until
 
 import yarpy
 from yarpy import record
-from yarpy.errors import LocalProtocolError
+from yarpy.errors import LocalProtocolError, UnknownPlugin
 from yarpy.kits.record.capture import recorder as module
 from yarpy.kits.record.capture.disk_space import DiskSpace
 from yarpy.kits.record.capture.recorder import SECOND, Recorder
@@ -293,6 +293,12 @@ def test_by_default_the_date(tmp_path, names, monkeypatch) -> None:
     monkeypatch.chdir(tmp_path)
     with Recorder("/x", names=names, tell=lambda line: None) as recorder:
         assert recorder.files[0].name.startswith("record-20")
+
+
+def test_a_carrier_that_nobody_has(tmp_path, names) -> None:
+    with pytest.raises(UnknownPlugin, match='no carrier "tpc": did you mean "tcp"'):
+        Recorder("/x", path=tmp_path / "x", carrier="tpc", names=names)
+    assert not [*tmp_path.iterdir()]
 
 
 def test_a_defect_is_told(tmp_path, names, out, monkeypatch) -> None:

@@ -87,6 +87,11 @@ def test_messages_of_every_kind_come_back(names, tmp_path) -> None:
     ]
 
 
+def test_a_start_behind_the_end(names, recording) -> None:
+    with pytest.raises(LocalProtocolError, match=r"after 99 s: the recording lasts 1\.\d s"):
+        Player(recording, start=99.0, names=names)
+
+
 def test_a_part_of_it_at_another_rate(names, recording) -> None:
     with (
         Player(recording, ["/b"], rate=10.0, start=0.2, duration=0.2, names=names) as player,

@@ -34,9 +34,11 @@ from yarpy.kits.record.capture.queue import MEMORY, Count, MessageQueue
 from yarpy.kits.record.capture.ring_buffer import RingBuffer
 from yarpy.kits.record.capture.subscriptions import PortSelection, Subscriptions
 from yarpy.kits.record.sink import Format, Opener
+from yarpy.link.begin.handshake import find_carrier
 from yarpy.log import logger
 from yarpy.names.base import NameClient
 from yarpy.port.connection import ConnectionEvent
+from yarpy.route import parse_carrier
 
 log = logger("yarpy.record")
 
@@ -68,8 +70,8 @@ class Recorder:
     name: of its own port. names: a name client, None for the default.
     tell: called with a line for people when something is to be known.
     room: the disk, for tests. now: the clock of all times in the files, in nanoseconds.
-    Raises FileExistsError, OSError; UnknownPlugin without the library `mcap`; LocalProtocolError,
-    AddressError, NoNameServer.
+    Raises FileExistsError, OSError; UnknownPlugin for a carrier that nobody has, and without the
+    library `mcap`; LocalProtocolError, AddressError, NoNameServer.
     """
 
     def __init__(
@@ -97,6 +99,7 @@ class Recorder:
         room: DiskSpace | None = None,
         now: Callable[[], int] = time.time_ns,
     ) -> None:
+        find_carrier(parse_carrier(carrier))
         named = tuple(dict.fromkeys((*ports, *(triggers or ()))))
         wanted = PortSelection(named, every, pattern, exclude)
         self._now = now

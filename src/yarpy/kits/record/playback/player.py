@@ -48,7 +48,8 @@ class Player:
     taken: called with a port of the recording whose name lives, and why: it is played to nobody;
     None: that is an error. `loop`, `muted` (ports that are not sent) and `reader_timeout` may be
     changed. Raises UnknownName for a port that is not in the recording, AddressError for a name
-    that lives, LocalProtocolError for what cannot be played, NoNameServer.
+    that lives, LocalProtocolError for what cannot be played and for a start behind the end,
+    NoNameServer.
     """
 
     def __init__(
@@ -77,6 +78,11 @@ class Player:
         self.begin += round(start * SECOND)
         last = max((one.end for one in recording.storages), default=0)
         self.end = last if duration is None else min(last, self.begin + round(duration * SECOND))
+        if start and self.begin > last:
+            length = max(0.0, start - (self.begin - last) / SECOND)
+            raise LocalProtocolError(
+                f"nothing was recorded after {start:g} s: the recording lasts {length:.1f} s"
+            )
         self._timeline = Timeline(self.begin, _checked(rate))
         self._stack = ExitStack()
         self._ports: dict[str, Port] = {}
