@@ -6,6 +6,7 @@ import signal
 import socket
 import threading
 from collections.abc import Callable, Iterator
+from concurrent.futures import ThreadPoolExecutor
 from contextlib import suppress
 from pathlib import Path
 from types import SimpleNamespace
@@ -149,6 +150,27 @@ def test_a_broker_that_does_not_answer_is_told_and_left(
         wait_until(lambda: later(clock, pings, port._hub) and link not in links(port))
         wait_until(lambda: any("has not answered" in str(event) for event in events))
     assert "it has not answered for" in caplog.text
+
+
+def test_a_broker_that_acknowledges_nothing_holds_no_writer(
+    fake: FakeBroker, names: yarpy.LocalNames, clock: Any, caplog: Any
+) -> None:
+    """No ping may come between messages and their acknowledgements."""
+    fake.answers = False
+    with yarpy.Port("/p", names=names) as port, ThreadPoolExecutor(1) as other:
+        port.connect(fake.topic("x", "+qos.1"))
+        (link,) = port._hub.outputs.links
+        pings = ping.Pings()
+        pings.look([port._hub])
+
+        def write() -> None:
+            while link in port._hub.outputs.links:
+                port.write([1])
+
+        writing = other.submit(write)
+        wait_until(lambda: "write() waits for it" in caplog.text)
+        wait_until(lambda: later(clock, pings, port._hub) and link not in port._hub.outputs.links)
+        writing.result(HANG)
 
 
 @pytest.mark.parametrize("added", ["", "+sub", "+qos.1"])

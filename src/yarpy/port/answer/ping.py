@@ -4,7 +4,7 @@ Rules: a ping goes out as often as its carrier says (`ping`), whatever else is s
 waits: where something is on its way there, or the peer takes nothing, it is left out until the next
 look. The protocol reads what is answered; who says nothing for SILENCE pings is taken for gone, and
 the connection ends with a log line: a program that is stopped, or a host that vanished, gives no
-other sign.
+other sign. Who owes an acknowledgement, which no ping may come between, is to say something, too.
 """
 
 from __future__ import annotations
@@ -60,7 +60,7 @@ class Pings:
                 if turn.asked is not None and now - turn.asked >= SILENCE * every:
                     del self._turns[link]
                     _end(link, f"it has not answered for {now - turn.asked:.0f} s")
-                elif now >= turn.due and _ping(link):
+                elif now >= turn.due and (_ping(link) or _owes(link)):
                     turn.due = now + every
                     turn.asked = now if turn.asked is None else turn.asked
 
@@ -70,6 +70,11 @@ def _is_there(link: Link, heard: int) -> bool:
     that is busy with a message."""
     driver = link.driver
     return driver.bytes_in != heard or driver.transport.wait_readable(0.0)
+
+
+def _owes(link: Link) -> bool:
+    """Return whether the peer is to acknowledge messages."""
+    return isinstance(link, Outbound) and link.sender.window.open > 0
 
 
 def _end(link: Link, why: str) -> None:
