@@ -30,6 +30,7 @@ from yarpy.cli.stderr import complain
 from yarpy.errors import AccessRefused, RemoteError
 from yarpy.kits.launch.run import terminal
 from yarpy.log import logger
+from yarpy.platform import waiting
 from yarpy.port.keep.log_sender import LOGGER
 
 if TYPE_CHECKING:
@@ -189,7 +190,7 @@ def serve(
     what = ", ".join(" ".join(entry) for entry in allowed.entries) or "programs"
     log.info("%s starts %s for %s", name, what, whom)
     try:
-        while not over.wait(3600):
+        while not waiting.wait(over, 3600):
             pass
     except Interrupted:
         pass

@@ -28,6 +28,7 @@ from yarpy.kits.record.playback.topic import open_topic
 from yarpy.kits.record.recorded import PortFacts, Recorded
 from yarpy.kits.record.recording import Recording
 from yarpy.names.base import NameClient
+from yarpy.platform import waiting
 from yarpy.port.port import Port
 
 READER_TIMEOUT: Final = 0.5  # seconds that a reader may keep a message waiting, once
@@ -319,7 +320,7 @@ class Player:
             if left is not None and left <= 0:
                 self.latest = max(self.latest, -left)
                 return True
-            if changed.wait(left):
+            if waiting.wait(changed, left):
                 changed.clear()
 
     def _value(self, recorded: Recorded) -> Any:

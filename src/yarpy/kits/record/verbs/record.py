@@ -29,6 +29,7 @@ from yarpy.cli.output import print_json, print_line
 from yarpy.cli.signals import Interrupted
 from yarpy.cli.stderr import complain, warn
 from yarpy.errors import LocalProtocolError
+from yarpy.platform import waiting
 from yarpy.port.rpc import RpcServer
 
 if TYPE_CHECKING:
@@ -173,7 +174,7 @@ def command(
                 _live(recorder, began, duration, news)
             else:
                 click.echo(f"{beginning(recorder)}; {shown}", err=True)
-                stop.wait(duration)
+                waiting.wait(stop, duration)
     except Interrupted:
         pass  # how it ends
     finally:

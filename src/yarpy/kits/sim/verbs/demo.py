@@ -16,7 +16,6 @@ from __future__ import annotations
 import logging
 import os
 import sys
-import threading
 from collections.abc import Iterator
 from contextlib import ExitStack
 from typing import TYPE_CHECKING, Final
@@ -28,6 +27,7 @@ from yarpy.cli import log, signals
 from yarpy.cli.browser import open_page, url_of
 from yarpy.cli.output import print_line
 from yarpy.config.configuration import default_port
+from yarpy.platform import waiting
 
 if TYPE_CHECKING:
     from yarpy.kits.sim.guest import Guest
@@ -91,7 +91,7 @@ def command(seconds: float | None, no_browser: bool, lan: bool) -> int:
             print_line(_advice(server, robot, page, elsewhere))
             if not no_browser:
                 open_page(url_of(page.address))
-            threading.Event().wait(seconds)
+            waiting.wait(seconds=seconds)
     except signals.Interrupted:
         pass
     print_line("The demo ends.")
