@@ -175,7 +175,7 @@ def test_a_handler_that_closes_its_server_is_not_cancelled() -> None:
 
     async def main() -> None:
         names = LocalNames()
-        other = asyncio.Event()
+        other, over = asyncio.Event(), asyncio.Event()
 
         async def handle(message: Message) -> object:
             try:
@@ -183,10 +183,13 @@ def test_a_handler_that_closes_its_server_is_not_cancelled() -> None:
                     other.set()
                     await asyncio.Event().wait()
                 await server.close()
+                ended.append("closed")
             except asyncio.CancelledError:
                 ended.append("cancelled")
                 raise
-            ended.append("closed")
+            finally:
+                if message.value != ["wait"]:
+                    over.set()
             return None
 
         server = await aio.RpcServer("/server", handle, names=names).open()
@@ -198,6 +201,7 @@ def test_a_handler_that_closes_its_server_is_not_cancelled() -> None:
                     await two.call("close", timeout=HANG)
                 with contextlib.suppress(YarpError):
                     await asyncio.wait_for(waiting, HANG)
+        await over.wait()  # the loop cancels what is still at work at its own end
 
     asyncio.run(asyncio.wait_for(main(), HANG))
     assert sorted(ended) == ["cancelled", "closed"]

@@ -303,7 +303,7 @@ def _at_once(supervisor: Supervisor) -> None:
     for number in (signal.SIGINT, signal.SIGTERM):
         signal.signal(number, kill)
     if hasattr(signal, "SIGHUP"):
-        signal.signal(signal.SIGHUP, signal.SIG_IGN)
+        signal.signal(signal.SIGHUP, lambda number, frame: None)  # programs would inherit SIG_IGN
 
 
 def _follow(supervisor: Supervisor, printer: _Printer, live: bool, stop_on_failure: bool) -> None:
