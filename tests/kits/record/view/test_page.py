@@ -130,6 +130,20 @@ def test_looking_back(browser: Browser, walk: View, tmp_path: Path) -> None:
     assert "port=%2Fhead" in page.url
 
 
+def test_it_opens_where_each_port_has_said_something(browser: Browser, tmp_path: Path) -> None:
+    with McapWriter(tmp_path / "late.mcap") as writer:
+        for n in range(100):
+            writer.add("/a", "", START + n * SECOND // 10, payload_of([n]))
+            if n >= 5:
+                writer.add("/b", "", START + n * SECOND // 10, payload_of([n * 10]))
+    with FileSource([tmp_path / "late.mcap"]) as source, View(source, port=0) as view:
+        wait_until(lambda: source.seen == 1)
+        page = browser.open(view.url)
+        wait_until(lambda: "\n50" in card(page, "/b") and "\n5" in card(page, "/a"))
+        page.keyboard.press("Home")
+        wait_until(lambda: "nothing came until here" in card(page, "/b"))
+
+
 def test_playing(browser: Browser, walk: View) -> None:
     page = browser.open(walk.url, phone=True, dark=True)
     wait_until(lambda: "0.0 0.0" in card(page, "/head/state:o"))

@@ -101,6 +101,18 @@ function first() {
   return [...pictured.slice(0, FIRST / 2), ...others].slice(0, FIRST).map((port) => port.name);
 }
 
+// The moment at which each open port has said something; the beginning, if that is far from it.
+function start() {
+  const {begin, length, ports} = line.told;
+  const opened = ports.filter((port) => cards.has(port.name));
+  const later = opened.map((port) => {
+    const place = port.bins.findIndex((count) => count);
+    return port.from - begin + (place > 0 ? ((place + 1) / port.bins.length) * port.length : 0);
+  });
+  const last = Math.max(0, ...later);
+  return begin + (last <= length / 10 ? last : 0);
+}
+
 // -- what is seen --
 
 let waiting = false;
@@ -181,6 +193,7 @@ async function look() {
   if (initial || whole) line.whole();
   else if (found.live && following) line.move(shift + found.length - line.view.length);
   if (!cards.size && initial | found.live) first().forEach(open);
+  if (initial && !found.live) line.cursor = start();
   tell();
   draw();
   return true;
