@@ -5,8 +5,8 @@ from __future__ import annotations
 import signal
 import socket
 import threading
+import time
 from collections.abc import Callable, Iterator
-from concurrent.futures import ThreadPoolExecutor
 from contextlib import suppress
 from pathlib import Path
 from types import SimpleNamespace
@@ -153,11 +153,12 @@ def test_a_broker_that_does_not_answer_is_told_and_left(
 
 
 def test_a_broker_that_acknowledges_nothing_holds_no_writer(
-    fake: FakeBroker, names: yarpy.LocalNames, clock: Any, caplog: Any
+    fake: FakeBroker, names: yarpy.LocalNames, clock: Any
 ) -> None:
     """No ping may come between messages and their acknowledgements."""
     fake.answers = False
-    with yarpy.Port("/p", names=names) as port, ThreadPoolExecutor(1) as other:
+    written: list[int] = []
+    with yarpy.Port("/p", names=names) as port:
         port.connect(fake.topic("x", "+qos.1"))
         (link,) = port._hub.outputs.links
         pings = ping.Pings()
@@ -165,12 +166,19 @@ def test_a_broker_that_acknowledges_nothing_holds_no_writer(
 
         def write() -> None:
             while link in port._hub.outputs.links:
-                port.write([1])
+                written.append(port.write([1]))
 
-        writing = other.submit(write)
-        wait_until(lambda: "write() waits for it" in caplog.text)
+        def waits() -> bool:
+            before = len(written)
+            time.sleep(0.2)
+            return link.sender.window.open > 0 and len(written) == before
+
+        writing = threading.Thread(target=write, daemon=True)
+        writing.start()
+        wait_until(waits)
         wait_until(lambda: later(clock, pings, port._hub) and link not in port._hub.outputs.links)
-        writing.result(HANG)
+        writing.join(HANG)
+        assert not writing.is_alive()
 
 
 @pytest.mark.parametrize("added", ["", "+sub", "+qos.1"])
