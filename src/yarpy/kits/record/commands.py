@@ -109,7 +109,8 @@ def recorder_commands(recorder: Recorder, stop: Callable[[], object]) -> Command
     )
 
 
-def _flag(value: object) -> bool:
+def flag(value: object) -> bool:
+    """Return what 0 or 1 says. Raises LocalProtocolError."""
     if value not in (0, 1):
         raise LocalProtocolError(f"{value!r} is neither 0 nor 1")
     return bool(value)
@@ -157,6 +158,7 @@ def _player_words(player: Player) -> dict[str, Act]:
         "mark": mark,
         "loop": loop,
         "rate": rate,
+        "setSpeed": rate,
         "status": status,
         "stop": player.stop,
         "quit": player.stop,
@@ -168,9 +170,6 @@ def _state(player: Player) -> str:
 
 
 def _words_of_cpp(player: Player) -> dict[str, Act]:
-    def speed(n: float) -> None:
-        player.rate = float(n)
-
     def progress() -> float:
         return 100 * player.position / player.length if player.length else 100.0
 
@@ -184,10 +183,10 @@ def _words_of_cpp(player: Player) -> dict[str, Act]:
         forward(-float(percent))
 
     def repeat(on: int = 1) -> None:
-        player.loop = _flag(on)
+        player.loop = flag(on)
 
     def strict(on: int = 1) -> None:
-        player.reader_timeout = STRICT if _flag(on) else READER_TIMEOUT
+        player.reader_timeout = STRICT if flag(on) else READER_TIMEOUT
 
     def known(port: object) -> str:
         found = plain_text(port)
@@ -203,7 +202,6 @@ def _words_of_cpp(player: Player) -> dict[str, Act]:
         "getProgress": progress,
         "getSliderPercentage": lambda: int(progress()),
         "getSpeed": lambda: player.rate,
-        "setSpeed": speed,
         "forward": forward,
         "backward": backward,
         "repeat": repeat,
