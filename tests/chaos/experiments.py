@@ -61,13 +61,13 @@ def kill_receiver(carrier: str, count: int) -> Row:
     """SIGKILL to the reading program, which is started anew at once."""
     back, delivered = [], 0
     with Stage() as stage:
-        reader = stage.read("/in")
-        writer = stage.write("/out", "/in", carrier, HERTZ)
+        reader = stage.read("/chaos/in")
+        writer = stage.write("/chaos/out", "/chaos/in", carrier, HERTZ)
         for _ in range(count):
             _wait_for_numbers(reader)
             reader.kill()
             delivered += len(reader.numbers)
-            reader = stage.read("/in")
+            reader = stage.read("/chaos/in")
             _wait_for_numbers(reader)
             back.append(max(0.0, reader.times[0] - reader.ready_at))
         counts = writer.end()
@@ -80,14 +80,14 @@ def kill_sender(carrier: str, count: int) -> Row:
     """SIGKILL to the writing program; the reader asks for the connection when it is back."""
     back = []
     with Stage() as stage:
-        reader = stage.read("/in")
-        writer = stage.write("/out", "/in", carrier, HERTZ)
+        reader = stage.read("/chaos/in")
+        writer = stage.write("/chaos/out", "/chaos/in", carrier, HERTZ)
         for _ in range(count):
             _wait_for_numbers(reader)
             writer.kill()
             time.sleep(0.1)
             before = len(reader.said)
-            writer = stage.write("/out", "", carrier, HERTZ)
+            writer = stage.write("/chaos/out", "", carrier, HERTZ)
             reader.wait_for(lambda: len(reader.said) > before)  # noqa: B023
             back.append(max(0.0, reader.said[before][0] - writer.ready_at))
         writer.kill()
@@ -98,7 +98,7 @@ def stop_one_of_two(seconds: float) -> Row:
     """SIGSTOP to one of two receivers of a port that writes in the background."""
     with Stage() as stage:
         stopped, other = stage.read("/stopped"), stage.read("/other")
-        with yarpy.BufferedPort("/out", names=_names(stage)) as out:
+        with yarpy.BufferedPort("/chaos/out", names=_names(stage)) as out:
             out.connect("/stopped")
             out.connect("/other")
             for halt in (False, True):
@@ -124,7 +124,7 @@ def slow_reader(seconds: float) -> Row:
     with Stage() as stage:
         stage.read("/slow", 0.1)
         other = stage.read("/other")
-        with yarpy.BufferedPort("/out", names=_names(stage)) as out:
+        with yarpy.BufferedPort("/chaos/out", names=_names(stage)) as out:
             out.connect("/slow")
             out.connect("/other")
             until, number, longest = time.monotonic() + seconds, 0, 0.0
@@ -222,8 +222,8 @@ def crowd(count: int, word: str, what: str) -> Row:
 def clock_jump(seconds: float) -> Row:
     """The wall clock of the sender leaps an hour back or forth every second."""
     with Stage() as stage:
-        reader = stage.read("/in")
-        writer = stage.write("/out", "/in", "tcp", HERTZ, "jump")
+        reader = stage.read("/chaos/in")
+        writer = stage.write("/chaos/out", "/chaos/in", "tcp", HERTZ, "jump")
         time.sleep(seconds)
         counts = writer.end()
         reader.wait_for(lambda: len(reader.numbers) + counts["drops"] >= counts["written"])
@@ -239,8 +239,8 @@ def clock_jump(seconds: float) -> Row:
 def cut_link(carrier: str, seconds: float) -> Row:
     """The network between two hosts goes away and comes back."""
     with network.link() as line, Stage(network.HERE) as stage:
-        reader = stage.read("/in", before=line.inside)
-        writer = stage.write("/out", "/in", carrier, HERTZ)
+        reader = stage.read("/chaos/in", before=line.inside)
+        writer = stage.write("/chaos/out", "/chaos/in", carrier, HERTZ)
         _wait_for_numbers(reader)
         line.cut()
         time.sleep(seconds)
@@ -271,10 +271,10 @@ def dead_reader(strict: bool, timeout: float) -> Row:
         _dead_after(timeout),
         network.hosts(2) as (first, second),
         Stage(network.AT_HOME) as stage,
-        yarpy.BufferedPort("/out", strict=strict, names=_names(stage)) as out,
+        yarpy.BufferedPort("/chaos/out", strict=strict, names=_names(stage)) as out,
     ):
-        reader = stage.read("/in", before=first.inside)
-        out.connect("/in")
+        reader = stage.read("/chaos/in", before=first.inside)
+        out.connect("/chaos/in")
         with _writing(out) as longest:
             _wait_for_numbers(reader)
             first.die()
@@ -282,8 +282,8 @@ def dead_reader(strict: bool, timeout: float) -> Row:
             wait_until(lambda: not out.outputs, timeout + 30)
             noticed = time.monotonic() - died
             _check(noticed < timeout + 5, f"it took {noticed:.1f} s to notice a dead host")
-            _names(stage).unregister("/in")
-            successor = stage.read("/in", before=second.inside)
+            _names(stage).unregister("/chaos/in")
+            successor = stage.read("/chaos/in", before=second.inside)
             _wait_for_numbers(successor)
             back = successor.times[0] - successor.ready_at
     return Row(
@@ -300,9 +300,9 @@ def dead_writer(timeout: float) -> Row:
         _dead_after(timeout),
         network.hosts(1) as (host,),
         Stage(network.AT_HOME) as stage,
-        yarpy.BufferedPort("/in", strict=True, names=_names(stage)) as in_,
+        yarpy.BufferedPort("/chaos/in", strict=True, names=_names(stage)) as in_,
     ):
-        stage.write("/out", "/in", "tcp", HERTZ, before=host.inside)
+        stage.write("/chaos/out", "/chaos/in", "tcp", HERTZ, before=host.inside)
         for _ in range(20):
             in_.read(timeout=30)
         host.die()
@@ -321,10 +321,10 @@ def stopped_reader_on_a_dead_host(timeout: float) -> Row:
         _dead_after(timeout),
         network.hosts(1) as (host,),
         Stage(network.AT_HOME) as stage,
-        yarpy.Port("/out", names=_names(stage)) as out,
+        yarpy.Port("/chaos/out", names=_names(stage)) as out,
     ):
-        reader = stage.read("/in", before=host.inside)
-        out.connect("/in")
+        reader = stage.read("/chaos/in", before=host.inside)
+        out.connect("/chaos/in")
         with _writing(out, "x" * 100_000):
             _wait_for_numbers(reader)
             for line in host.programs():

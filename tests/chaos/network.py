@@ -1,7 +1,7 @@
 """Links that are cut, hosts that die, a disk that is full: what only root may make, out of the way.
 
 Rules: a network namespace and a pair of virtual interfaces with the number of this process in their
-names; a file system in memory. All are gone afterwards.
+names and addresses, so that two processes of a test run do not meet; a file system in memory. All are gone afterwards.
 """
 
 from __future__ import annotations
@@ -15,13 +15,16 @@ from contextlib import contextmanager
 from pathlib import Path
 from typing import Final
 
-#: Our end of the link, and the other one.
-HERE: Final = "10.231.77.1"
-THERE: Final = "10.231.77.2"
+#: The first three numbers of addresses that no other process of a test run has at the same time.
+_OURS: Final = f"10.{100 + os.getpid() // 125 % 100}.{2 * (os.getpid() % 125)}"
+_OTHERS: Final = f"10.{100 + os.getpid() // 125 % 100}.{2 * (os.getpid() % 125) + 1}"
 
+#: Our end of the link, and the other one.
+HERE: Final = f"{_OURS}.1"
+THERE: Final = f"{_OURS}.2"
 
 #: Our address in the network of the hosts that die.
-AT_HOME: Final = "10.231.78.1"
+AT_HOME: Final = f"{_OTHERS}.1"
 
 
 class Missing(Exception):
@@ -120,7 +123,7 @@ def hosts(count: int) -> Iterator[list[Host]]:
         _run("ip", "link", "set", switch, "up")
         found = []
         for place, name in enumerate(names):
-            plug, address = f"yc{number}p{place}", f"10.231.78.{place + 2}"
+            plug, address = f"yc{number}p{place}", f"{_OTHERS}.{place + 2}"
             _run("ip", "netns", "add", name)
             _run("ip", "link", "add", plug, "type", "veth", "peer", "name", "eth0", "netns", name)
             _run("ip", "link", "set", plug, "master", switch)

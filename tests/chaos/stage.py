@@ -1,8 +1,8 @@
 """Where it happens: a name server, the programs of `peers.py`, and what they have said.
 
 with Stage() as stage:
-    reader = stage.read("/in")
-    writer = stage.write("/out", "/in", "tcp", 500)
+    reader = stage.read("/chaos/in")
+    writer = stage.write("/chaos/out", "/chaos/in", "tcp", 500)
     reader.process.kill()
 """
 

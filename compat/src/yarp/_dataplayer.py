@@ -23,11 +23,12 @@ import yarpy
 from yarp._log import print_lines
 from yarpy.data.text import plain_text
 from yarpy.kits import record
-from yarpy.kits.record.commands import JUMP, STRICT, flag
-from yarpy.kits.record.playback.player import READER_TIMEOUT
 
 EXIT_USAGE: Final = 1
+READER_TIMEOUT: Final = 0.5  # seconds that a reader may keep a message waiting, once
+STRICT: Final = 10.0  # the same where nothing is to be lost
 STEP: Final = 5.0  # seconds for the messages of a step
+JUMP: Final = 5.0  # percent
 SECOND: Final = 1_000_000_000  # nanoseconds
 
 OK: Final = yarpy.Vocab("ok")
@@ -211,14 +212,14 @@ class DataPlayer:
 
     def repeat(self, on: int = 1) -> bool:
         """Begin again at the end, or do not."""
-        self._repeat = flag(on)
+        self._repeat = _flag(on)
         with suppress(ValueError):
             self._loaded()[1].loop = self._repeat
         return True
 
     def setStrict(self, on: int = 1) -> bool:
         """Wait for readers that are slow, or do not."""
-        self._strict = flag(on)
+        self._strict = _flag(on)
         with suppress(ValueError):
             self._loaded()[1].reader_timeout = STRICT if self._strict else READER_TIMEOUT
         return True
@@ -270,6 +271,12 @@ def answer(player: DataPlayer, request: yarpy.Bottle, quit: Callable[[], object]
     if isinstance(found, bool):
         return yarpy.Bottle([OK if found else FAIL])
     return yarpy.Bottle(found if isinstance(found, list) else [found])
+
+
+def _flag(value: object) -> bool:
+    if value not in (0, 1):
+        raise ValueError(f"{value!r} is neither 0 nor 1")
+    return bool(value)
 
 
 def _taken(part: str, error: yarpy.YarpError) -> None:
