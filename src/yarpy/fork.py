@@ -5,7 +5,8 @@ lock which a child must not share registers here, when it first has it. What one
 no reason to leave out the others.
 
 A fork waits for the imports of other threads: in the child, Python would keep a module that is half
-imported locked for ever, and connections import what they need while they are made.
+imported locked for ever, and connections import what they need while they are made. One that it did
+not see, or did not wait for, is forgotten in the child, which imports that module anew.
 """
 
 from __future__ import annotations
@@ -76,7 +77,21 @@ def _importing() -> set[int]:
     return found
 
 
+def _forget_imports() -> None:
+    """Forget what threads that are not here had half imported, and the locks that they hold."""
+    importer: Any = sys.modules.get("_frozen_importlib")
+    for name, reference in [*getattr(importer, "_module_locks", {}).items()]:
+        held = reference()
+        if getattr(held, "owner", None) in (None, threading.get_ident()):
+            continue
+        importer._module_locks.pop(name, None)
+        spec = getattr(sys.modules.get(name), "__spec__", None)
+        if getattr(spec, "_initializing", False):
+            del sys.modules[name]
+
+
 def _start_over() -> None:
+    _forget_imports()
     for action in tuple(_actions):
         try:
             action()

@@ -1,7 +1,8 @@
 """Links that are cut, hosts that die, a disk that is full: what only root may make, out of the way.
 
 Rules: a network namespace and a pair of virtual interfaces with the number of this process in their
-names and addresses, so that two processes of a test run do not meet; a file system in memory. All are gone afterwards.
+names and addresses, so that two processes of a test run do not meet; a file system in memory. All
+are gone afterwards.
 """
 
 from __future__ import annotations
