@@ -31,9 +31,10 @@ def names() -> yarpy.LocalNames:
 
 
 @contextmanager
-def recording(port: int) -> Iterator[tuple[int, bytearray]]:
-    """A number that leads to `port`, and all bytes that passed, both ways."""
-    seen = bytearray()
+def recording(port: int) -> Iterator[tuple[int, bytearray, list[bool]]]:
+    """A number that leads to `port`, all bytes that passed, both ways, and an item for each
+    connection that is over."""
+    seen, over = bytearray(), []
 
     def pump(one: socket.socket, other: socket.socket) -> None:
         try:
@@ -53,6 +54,7 @@ def recording(port: int) -> Iterator[tuple[int, bytearray]]:
             back.start()
             pump(near, far)
             back.join()
+        over.append(True)
 
     def accept() -> None:
         while True:
@@ -64,7 +66,7 @@ def recording(port: int) -> Iterator[tuple[int, bytearray]]:
 
     with socket.create_server(("127.0.0.1", 0)) as server:
         threading.Thread(target=accept, daemon=True).start()
-        yield server.getsockname()[1], seen
+        yield server.getsockname()[1], seen, over
         server.shutdown(socket.SHUT_RDWR)
 
 
@@ -85,7 +87,7 @@ def test_nothing_of_a_message_can_be_read_on_the_way(
     with yarpy.Port("/in", names=names) as in_, yarpy.Port("/out", names=names) as out:
         for secure in (False, True):
             plain = carrier.removesuffix("+tls").replace("tls", "tcp")
-            with recording(in_.contact.port) as (number, passed):
+            with recording(in_.contact.port) as (number, passed, _):
                 out.connect(f"/127.0.0.1:{number}", carrier if secure else plain)
                 for value in ([SECRET, 1], [SECRET, "x" * 300_000]):
                     out.write(value)
@@ -98,6 +100,20 @@ def test_nothing_of_a_message_can_be_read_on_the_way(
                 wait_until(lambda: not in_.inputs)
             assert (SECRET.encode() in passed) == (not secure)
             assert not (secure and b"/out" in passed)
+
+
+def test_nor_what_is_asked_about_a_connection(names: yarpy.LocalNames) -> None:
+    with (
+        yarpy.BufferedPort("/in", names=names) as in_,
+        yarpy.Port("/out", names=names) as out,
+        recording(in_.contact.port) as (number, passed, over),
+    ):
+        out.connect(f"/127.0.0.1:{number}", "websocket+tls")
+        wait_until(lambda: len(over) == 1)  # who is it?
+        out.write(1)
+        wait_until(lambda: len(over) == 2)  # how much came?
+        assert b"/out" not in passed
+        assert b"CONNACK" not in passed
 
 
 def test_questions_and_pictures(names: yarpy.LocalNames) -> None:

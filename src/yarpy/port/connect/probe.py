@@ -29,6 +29,7 @@ from yarpy.link.ending import moment
 from yarpy.link.send.outbound import Outbound
 from yarpy.names.default import secret
 from yarpy.route import Route, parse_carrier
+from yarpy.transports.tls_setting import WORD
 from yarpy.wire.message import ADMIN, CALL, Message, Packet
 from yarpy.wire.steps import Steps
 from yarpy.wire.stream import ByteStream
@@ -46,12 +47,15 @@ def ask(
     name: str = "admin",
     timeout: float = TIMEOUT,
     secret_: bytes | None = None,
+    secure: bool = False,
 ) -> Bottle:
-    """The answer to an administrative question (`key` "a") or to data ("d").
+    """The answer to an administrative question (`key` "a") or to data ("d"). `secure`: it is asked
+    in TLS.
 
     Raises LinkClosed, Timeout, RemoteProtocolError.
     """
-    route = Route(name, contact.name or f"/{contact.address}", "text_ack")
+    spoken = f"text_ack+{WORD}" if secure else "text_ack"
+    route = Route(name, contact.name or f"/{contact.address}", spoken)
     deadline = _deadline(timeout)
     driver, carrier = greet(
         contact, route, key=secret() if secret_ is None else secret_, timeout=timeout
@@ -73,11 +77,11 @@ def is_refused(error: BaseException) -> bool:
 
 
 def connection(
-    contact: Contact, side: str, peer: str, secret_: bytes | None = None
+    contact: Contact, side: str, peer: str, secret_: bytes | None = None, secure: bool = False
 ) -> Property | None:
     """How the connection with `peer` on that side ("in" or "out") of the port at `contact` is
     doing; None if there is none. Raises LookupError if it is no port of yarpy, and as `ask`."""
-    reply = ask(contact, [Vocab("stat"), Vocab(side), peer], secret_=secret_)
+    reply = ask(contact, [Vocab("stat"), Vocab(side), peer], secret_=secret_, secure=secure)
     if reply and reply[0] == Vocab("fail"):
         raise LookupError(f"{contact} does not count")
     return Property.from_bottle(_pairs(reply[0])) if reply else None

@@ -10,7 +10,7 @@ cannot be asked, since no name service knows its address, lives by its traffic: 
 a long silence.
 
 A receiver that does not acknowledge is asked now and then, while some are sent, how many messages
-came. A port of C++ does not know.
+came, in TLS if the connection is. A port of C++ does not know.
 
 `look` never blocks: each question has a short-lived thread, which also calls back when a connection
 is dead. A connection whose lease has ended is closed, and not asked for again.
@@ -176,7 +176,9 @@ class Keepalive:
         if sign.answers:
             side = "out" if isinstance(link, Inbound) else "in"
             try:
-                told = probe.connection(contact, side, hub.name, hub.key)
+                told = probe.connection(
+                    contact, side, hub.name, hub.key, secure=link.route.spec.in_tls
+                )
             except LinkClosed as error:
                 return self._unreached(sign, error)
             except LookupError:
@@ -264,7 +266,9 @@ def doubt(hub: Hub, link: Link, contact: Contact) -> int:
     """Ask the port at the other end, at `contact`, about the connection: 0 all is well, 1 unknown
     there. Raises as `probe.ask`."""
     direction = Vocab("out" if isinstance(link, Inbound) else "in")
-    listed = probe.ask(contact, [Vocab("list"), direction], secret_=hub.key)
+    listed = probe.ask(
+        contact, [Vocab("list"), direction], secret_=hub.key, secure=link.route.spec.in_tls
+    )
     known = [plain_text(name) for name in listed]
     # Somebody may have connected us by our address instead of our name.
     return 0 if hub.name in known or any(":" in name for name in known) else 1
