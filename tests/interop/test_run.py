@@ -90,6 +90,8 @@ def test_the_server_of_cpp(network: CppYarp, tmp_path: Path) -> None:
             with pytest.raises(RemoteError, match="No such file"):
                 node.start("t2", ["nosuch"])
             assert node.which("sh").endswith("/sh")
+            with pytest.raises(RemoteError, match="keeps no output"):
+                node.output("t1")
             assert node.signal("t1", signal.SIGTERM)
             _until(lambda: not node.is_running("t1"))
             assert not node.signal("t1", signal.SIGKILL)

@@ -29,8 +29,8 @@ ANSWERS = {
     "(sigterm t)": '"sigterm FAILED"',
     "(sigtermall)": '"sigtermall OK"',
     "(which ls)": '"\\"/usr/bin/ls\\""',
-    "(output t)": "one two",
-    "(output x)": '-1 "what?"',
+    "(isrunning t) (output)": "running (one two)",
+    "(isrunning x) (output)": '"not running"',
     "(exit)": '"exit OK"',
 }
 
@@ -69,6 +69,11 @@ def test_the_rest(node: RunClient) -> None:
     node.end_all()
     assert node.which("ls") == "/usr/bin/ls" and node.output("t") == ["one", "two"]
     node.exit()
+
+
+def test_cpp_keeps_no_output(node: RunClient) -> None:
+    with pytest.raises(RemoteError, match="/cpp is C.. yarprun, .* --log"):
+        node.output("x")  # a word that it does not know would silence it for good
 
 
 def test_nobody_there(names: LocalNames) -> None:

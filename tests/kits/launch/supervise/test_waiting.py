@@ -20,8 +20,9 @@ def waiting(names: yarpy.LocalNames, **units: str) -> Waiting:
     return Waiting(find, 0.3, names)
 
 
-def unit(*needs: Need, after: tuple[str, ...] = ()):
-    return SimpleNamespace(module=Module("a", "a", needs=needs, after=after), detail="")
+def unit(*needs: Need, after: tuple[str, ...] = (), node: str = ""):
+    module = Module("a", "a", needs=needs, after=after, node=node)
+    return SimpleNamespace(module=module, detail="")
 
 
 def test_a_port_that_comes(network: yarpy.LocalNames) -> None:
@@ -41,6 +42,20 @@ def test_one_that_does_not(network: yarpy.LocalNames, timeout: float | None) -> 
     seconds = 0.3 if timeout is None else timeout
     said = waiting(network).wait(unit(Need("/never", timeout)), NEVER)
     assert said == f'"/never" is not there after {seconds:g} s'
+
+
+def test_a_computer_that_boots_later(network: yarpy.LocalNames) -> None:
+    one = unit(node="/node")
+    said = waiting(network).wait(one, NEVER)
+    assert said == 'no server of programs is called "/node" (`yarpy run --server /node`) after 0.3 s'
+    booting: list[str] = []
+    patient = Waiting(lambda label: one, 30.0, network)
+    thread = threading.Thread(target=lambda: booting.append(patient.wait(one, NEVER)))
+    thread.start()
+    wait_until(lambda: one.detail.startswith("for /node: "))
+    with yarpy.Port("/node", names=network):
+        thread.join()
+    assert booting == [""]
 
 
 def test_answers(network: yarpy.LocalNames) -> None:

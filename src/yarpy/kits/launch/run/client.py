@@ -132,8 +132,14 @@ class RunClient:
         return found
 
     def output(self, tag: str) -> list[str]:
-        """Return the last lines that programs with that tag have said. C++ yarprun has none."""
-        return [plain_text(line) for line in self._ask(["output", tag])]
+        """Return the last lines that programs with that tag have said. Raises RemoteError at
+        servers of C++, which keep none."""
+        answer = self._ask(["isrunning", tag], ["output"])
+        if len(answer) < 2:
+            raise RemoteError(
+                f"{self.server} is C++ yarprun, which keeps no output: start the program with --log"
+            )
+        return [plain_text(line) for line in answer[1]]
 
     def which(self, file: str) -> str:
         """Return the file that a name stands for over there."""

@@ -3,9 +3,11 @@
     (cmd "sleep 60") (as tag1)       31991 "STARTED: server=/nodeA alias=tag1 ..."
     (isrunning tag1)                 "running"
     (isrunning tag1) (code)          "not running" -9        the code is left out by C++
+    (isrunning tag1) (output)        "running" ("a line" "another")     and so is the output
 
 Rules: pure. A request is a Bottle of lists, each of which begins with a word that is looked for in
-a fixed order: those of C++ yarprun, and `output`, which it does not know.
+a fixed order: those of C++ yarprun. That one passes over what is said beside a word that it knows,
+and never answers anybody again once it was asked one that it does not know.
 """
 
 from __future__ import annotations
@@ -19,7 +21,7 @@ from yarpy.data.text import plain_text
 #: In the order in which they count.
 VERBS: Final = (
     *("stdio", "cmd", "kill", "sigterm", "sigtermall", "ps", "isrunning", "killstdio"),
-    *("output", "sysinfo", "which", "exit"),
+    *("sysinfo", "which", "exit"),
 )
 
 

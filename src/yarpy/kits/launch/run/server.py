@@ -221,13 +221,15 @@ class RunServer:
             case "ps":
                 return Bottle(map(_shown, (one for one in self.programs if one.running)))
             case "isrunning":
-                if any(one.running for one in self._tagged(tag)):
-                    return Bottle(["running"])
-                return Bottle(["not running", *(self._code(tag) if "code" in request else ())])
+                runs = any(one.running for one in self._tagged(tag))
+                answer = Bottle(["running" if runs else "not running"])
+                if "output" in request:
+                    answer.append([line for one in self._heard(tag) for line in one.heard()])
+                elif "code" in request and not runs:
+                    answer += self._code(tag)
+                return answer
             case "killstdio":
                 return Bottle(["killstdio OK"])
-            case "output":
-                return Bottle([line for one in self._heard(tag) for line in one.heard()])
             case "which":
                 return Bottle([located(tag) if tag else ""])
             case "sysinfo":

@@ -2,8 +2,8 @@
 
     terminal.attach("/nodeA/4711/sh-1")
 
-Rules: the ports are `UUID/stdio:i` and `UUID/stdio:o`, connected to those of the program. The end
-of input, a signal, and the end of the program end it.
+Rules: the ports are `UUID/stdio:i` and `UUID/stdio:o`, connected to those of the program. A signal
+and the end of the program end it; the end of input does not, for the program answers yet.
 """
 
 from __future__ import annotations
