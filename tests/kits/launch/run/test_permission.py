@@ -118,7 +118,8 @@ def _address(node: RunClient) -> tuple[str, int]:
 def test_a_web_page_starts_nothing(node: RunClient, origin: str | None) -> None:
     """Whatever it says of itself: the browser is a program of the owner."""
     host, port = _address(node)
-    for path, data in (("/", b"data=(cmd sleep) (as x)"), ("/?req=(cmd+sleep)+(as+x)", None)):
+    asked = [(path, None) for path in ("/", "/?data=", "/?req=(cmd+sleep)+(as+x)")]
+    for path, data in (("/", b"data=(cmd sleep) (as x)"), *asked):
         request = urllib.request.Request(f"http://{host}:{port}{path}", data)
         if origin is not None:
             request.add_header("Origin", origin)

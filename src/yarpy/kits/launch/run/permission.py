@@ -68,7 +68,7 @@ class Granted(Admission):
 
 
 class Refusing(Admission):
-    """Nothing, but for asking what the port is."""
+    """Nothing, but for asking what the port is, which web pages may not either."""
 
     everything = False
     open = False
@@ -78,10 +78,10 @@ class Refusing(Admission):
         self._why = why
 
     def allows(self, right: str, name: str = "") -> bool:
-        return right == ASK
+        return right == ASK and not self.peer.page
 
     def refusal(self, right: str, name: str = "") -> str:
-        return "" if right == ASK else self._why
+        return "" if self.allows(right) else self._why
 
     def rights(self) -> list[str]:
         return []
