@@ -72,7 +72,7 @@ def test_the_rest(node: RunClient) -> None:
 
 
 def test_cpp_keeps_no_output(node: RunClient) -> None:
-    with pytest.raises(RemoteError, match="/cpp is C.. yarprun, .* --log"):
+    with pytest.raises(RemoteError, match=r"/cpp is C.. yarprun, .* --log"):
         node.output("x")  # a word that it does not know would silence it for good
 
 
