@@ -151,22 +151,21 @@ with (
             pass
 """
 LAB_PROGRAM = """
-import time, yarpy
+import signal, threading, yarpy
+ended = threading.Event()
+signal.signal(signal.SIGINT, lambda *_: ended.set())
 with yarpy.Port("/lab/out") as out:
     out.connect("/robot/in", timeout=30)
     print("ready")
     taken = number = 0
-    try:
-        while True:
-            number += 1
-            taken += out.write([number])
-            print("sent", number)
-            time.sleep(0.01)
-    except KeyboardInterrupt:
-        out.flush(10)
-        past = out.stats.past.outputs
-        dropped = past.drops + sum(one.drops for one in out.stats.outputs)
-        print("counted", number, taken, out.stats.unconnected, dropped, past.unconfirmed)
+    while not ended.wait(0.01):
+        number += 1
+        taken += out.write([number])
+        print("sent", number)
+    out.flush(10)
+    past = out.stats.past.outputs
+    dropped = past.drops + sum(one.drops for one in out.stats.outputs)
+    print("counted", number, taken, out.stats.unconnected, dropped, past.unconfirmed)
 """
 
 

@@ -193,10 +193,10 @@ def test_a_question_without_an_answer_delays_nobody(
     asked = threading.Event()
     real = probe.connection
 
-    def connection(contact, *arguments):
+    def connection(contact, *arguments, **options):
         if contact.port == number:
             asked.set()
-        return real(contact, *arguments)
+        return real(contact, *arguments, **options)
 
     monkeypatch.setattr(probe, "connection", connection)
     patient = {**probe.ask.__kwdefaults__, "timeout": 8.0}

@@ -260,7 +260,7 @@ def test_silent_connections_end_with_what_they_watch(names: LocalNames, judge: J
 def test_a_host_that_cannot_be_reached_may_come_back(
     names: LocalNames, judge: Judge, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    def connection(*arguments: object) -> None:
+    def connection(*arguments: object, **options: object) -> None:
         raise LinkClosed("No route to host")
 
     with Port("/out", names=names) as out, BufferedPort("/in", names=names) as in_:

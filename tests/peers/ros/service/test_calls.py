@@ -92,7 +92,7 @@ def test_threads_that_call_at_once_share_a_connection(
         assert len(server.inputs) == 1
 
 
-THREADS = """
+THREADS = r"""
 import rospy, threading
 from std_srvs.srv import Trigger
 rospy.init_node("many", disable_signals=True)
@@ -100,9 +100,9 @@ rospy.wait_for_service("/slow_service")
 def ask(persistent):
     try:
         said = rospy.ServiceProxy("/slow_service", Trigger, persistent)()
-        print("heard", said.message, flush=True)
+        print(f"heard {said.message}\n", end="", flush=True)
     except rospy.ServiceException as error:
-        print("heard", error, flush=True)
+        print(f"heard {error}\n", end="", flush=True)
 for number in range(4):
     threading.Thread(target=ask, args=(number % 2 == 0,)).start()
 """
