@@ -38,6 +38,23 @@ def test_iteration_gives_them_all() -> None:
     }
 
 
+@pytest.mark.parametrize(
+    ("system", "missing"),
+    [
+        (("linux", "posix"), set()),
+        (("darwin", "posix"), {"memory", "shmem"}),
+        (("win32", "nt"), {"memory", "shmem", "unix_stream"}),
+    ],
+)
+def test_what_a_system_lacks_is_not_offered(
+    system: tuple[str, str], missing: set[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr("yarpy.facts.SYSTEM", system)
+    own = CarrierRegistry()
+    own.add("mine", object())
+    assert {*own.names()} - {*own.offered()} == missing
+
+
 def test_unknown_name_comes_with_the_nearest() -> None:
     with pytest.raises(UnknownPlugin, match='no carrier "tcpp": did you mean "tcp"'):
         registry.carriers.load("tcpp")

@@ -6,9 +6,12 @@ class (`tests/test_shipped.py`); of any other plug-in the class itself is asked,
 
 from __future__ import annotations
 
+import os
+import sys
 from dataclasses import dataclass, fields
 from typing import Any, Final, Self
 
+SYSTEM: Final = (sys.platform, os.name)  # what this one is called
 MAGIC_SIZE: Final = 8  # bytes that identify the protocol of a connection
 
 
@@ -130,7 +133,7 @@ class TransportRow(Row):
     hosts, where none was named. `no_tls`: why there is no TLS on it. `proves`: a peer's address is
     its own, not what it says. `meets`: of a connection over it the two ends can meet elsewhere.
     `stays`: what it carries does not leave the computer. `datagrams`: it carries these, which may
-    be lost.
+    be lost. `system`: the `sys.platform` or `os.name` that has it; "": each.
     """
 
     hosts: str = ""
@@ -142,6 +145,12 @@ class TransportRow(Row):
     meets: bool = True
     stays: bool = False
     datagrams: bool = False
+    system: str = ""
+
+    @property
+    def here(self) -> bool:
+        """Return whether this system has it."""
+        return not self.system or self.system in SYSTEM
 
     @classmethod
     def of(cls, name: str, plugin: Any) -> Self:

@@ -142,6 +142,12 @@ class CarrierRegistry(Registry[CarrierRow]):
                 pass  # whoever loads it is told
         return row or CarrierRow(name)
 
+    def offered(self) -> list[str]:
+        """Return the names of the carriers of which this system has the transport, and of those of
+        other packages."""
+        rows = {name: TRANSPORTS.get(row.over or "tcp") for name, row in self._shipped.items()}
+        return [name for name in self.names() if (row := rows.get(name)) is None or row.here]
+
     def subprotocol(self, offered: Iterable[str]) -> str | None:
         """Return the name of the carrier that may come in a WebSocket with one of these
         subprotocols, or None."""

@@ -142,10 +142,12 @@ TRANSPORTS: Final[Mapping[str, TransportRow]] = _table(
     TransportRow("tls", f"{_MOVES}.tls:Tls"),
     TransportRow("udp", f"{_MOVES}.datagram:Udp", meets=False, datagrams=True),
     TransportRow("mcast", f"{_MOVES}.datagram:Mcast", meets=False, datagrams=True),
-    TransportRow("unix", f"{_MOVES}.unix:Unix", meets=False, stays=True),
+    TransportRow("unix", f"{_MOVES}.unix:Unix", meets=False, stays=True, system="posix"),
     TransportRow("inproc", f"{_MOVES}.inproc:Inproc", meets=False, stays=True),
-    TransportRow("memory", f"{_MOVES}.shared.memory:Memory", meets=False, stays=True),
-    TransportRow("shmem", f"{_MOVES}.shared.shmem:Shmem", meets=False, stays=True),
+    TransportRow(
+        "memory", f"{_MOVES}.shared.memory:Memory", meets=False, stays=True, system="linux"
+    ),
+    TransportRow("shmem", f"{_MOVES}.shared.shmem:Shmem", meets=False, stays=True, system="linux"),
     TransportRow("mpi", f"{_PEERS}.mpi.bcast:MpiOpener", "mpi", **_MPI),
     TransportRow("bcast", f"{_PEERS}.mpi.bcast:BcastOpener", "mpi", **_MPI),
     TransportRow("ros2", f"{_PEERS}.ros2.medium:Ros2Opener", "ros2", meets=False, proves=False),

@@ -91,8 +91,9 @@ def test_a_connection_that_was_dialled_by_address(names: yarpy.LocalNames) -> No
     with yarpy.Port("/a", names=names) as a, yarpy.Port("/b", names=names) as b:
         a.connect(f"/{b.address}")
         wait_until(lambda: b.inputs)
-        qos.grant("/a", "/b", sender=Qos(packets="HIGH"), receiver=Qos(packets=3), names=names)
-        assert [one.packets for one in qos.granted("/a", "/b", names)] == ["AF42", 3]
+        qos.grant("/a", "/b", sender=Qos(deadline=0.5), receiver=Qos(rate=3), names=names)
+        found = qos.granted("/a", "/b", names)
+        assert [(one.deadline, one.rate) for one in found] == [(0.5, None), (None, 3)]
 
 
 def test_the_sender_stands_first(names: yarpy.LocalNames) -> None:
@@ -109,5 +110,5 @@ def test_the_sender_stands_first(names: yarpy.LocalNames) -> None:
 
 def test_of_two_connections_each_is_meant_as_it_is_written(names: yarpy.LocalNames) -> None:
     yarpy.connect("/in", "/out", names=names)
-    qos.grant("/in", "/out", sender=Qos(packets="HIGH"), names=names)
-    assert qos.granted("/in", "/out", names)[0] == Qos(packets="AF42")
+    qos.grant("/in", "/out", sender=Qos(deadline=0.5), names=names)
+    assert qos.granted("/in", "/out", names)[0].deadline == 0.5

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import pytest
+from support.system import NO_MARKS
 from support.wait import wait_until
 
 import yarpy
@@ -40,6 +41,7 @@ def test_both_ways_to_connect_give_a_connection() -> None:
             _ = other.stats
 
 
+@pytest.mark.skipif(bool(NO_MARKS), reason=NO_MARKS)
 def test_priority_is_read_and_asked_for_at_the_senders_end() -> None:
     names = LocalNames()
     with Port("/out", names=names) as out, BufferedPort("/in", names=names):

@@ -74,6 +74,9 @@ WHEELS = (
     "lupa",
     "soxr",
     "cryptography==42.0.5",
+    "mcap",
+    "lz4",
+    "zstandard",
 )
 TESTING = ("pytest", "pytest-timeout", "hypothesis")
 LIMIT = 240.0  # seconds for a file
@@ -89,7 +92,7 @@ def prepare() -> Path:
     """
     if shutil.which("wine") is None:
         raise MissingPeer("no wine here: apt-get install wine wine64")
-    folder = peers_directory() / "windows-cpython-3.11.9-3"
+    folder = peers_directory() / "windows-cpython-3.11.9-4"
     folder.mkdir(parents=True, exist_ok=True)
     with (folder / "lock").open("w") as lock:
         hold(lock)

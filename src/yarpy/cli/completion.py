@@ -148,7 +148,7 @@ def _values(parameter: click.Parameter, word: str) -> Iterator[Candidate]:
     elif name in CARRIERS:
         from yarpy.registry import carriers
 
-        yield from (Candidate(carrier, "carrier") for carrier in carriers.names())
+        yield from (Candidate(carrier, "carrier") for carrier in carriers.offered())
     elif name == VERB:
         yield from (Candidate(name, verb.about) for name, verb in VERBS.items())
     elif name in PORTS or (name == "name" and isinstance(parameter, click.Argument)):

@@ -261,7 +261,7 @@ class Serving:
     def _register_self(self) -> None:
         answer = self.service.answer
         answer(Bottle(["register", self.name, "tcp", self.host, self.port]))
-        known = carriers.names()
+        known = carriers.offered()
         answer(Bottle(["set", self.name, "offers", *known]))
         answer(Bottle(["set", self.name, "accepts", *known]))
         bound = listening_host()

@@ -46,6 +46,7 @@ class Opener:
     meets: ClassVar[bool] = True
     stays: ClassVar[bool] = False
     datagrams: ClassVar[bool] = False
+    system: ClassVar[str] = ""
 
     @classmethod
     def dial(cls, contact: Contact, timeout: float, route: Route | None = None) -> Transport:

@@ -179,6 +179,7 @@ class Unix(Opener):
     name = "unix"
     meets = False
     stays = True
+    system = "posix"
 
     @classmethod
     def meet(cls, place: Elsewhere) -> Transport:

@@ -54,7 +54,7 @@ def command(
     if list_carriers:
         from yarpy.registry import carriers
 
-        for name in carriers.names():
+        for name in carriers.offered():
             print_line(name)
         return 0
     if source is None or target is None:

@@ -189,7 +189,7 @@ class Registration:
 
     def describe(self, names: NameClient) -> None:
         """Tell a name service what we are, and that we listen."""
-        known = [*carriers.names()]
+        known: Values = carriers.offered()
         bound = listening_host()
         told: dict[str, Values] = {
             "offers": known,

@@ -318,6 +318,7 @@ class Memory(Opener):
     name = "memory"
     meets = False
     stays = True
+    system = "linux"
 
     @classmethod
     def meet(cls, place: Elsewhere) -> Transport | None:

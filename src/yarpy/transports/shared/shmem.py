@@ -260,6 +260,7 @@ class Shmem(Opener):
     name = "shmem"
     meets = False
     stays = True
+    system = "linux"
 
     @classmethod
     def meet(cls, place: Elsewhere) -> Transport:
