@@ -23,7 +23,7 @@ from yarpy import record
 from yarpy.errors import LocalProtocolError, UnknownPlugin
 from yarpy.kits.record.capture import recorder as module
 from yarpy.kits.record.capture.disk_space import DiskSpace
-from yarpy.kits.record.capture.recorder import SECOND, Recorder
+from yarpy.kits.record.capture.recorder import Recorder
 
 
 class Disk(NamedTuple):
@@ -225,12 +225,12 @@ def test_a_recording_that_starts_paused_begins_when_it_goes_on(tmp_path, names, 
     with Recorder("/out", path=tmp_path / "x", paused=True, names=names, now=lambda: clock[0]) as r:
         assert out.wait_for_outputs(timeout=HANG)
         wait_until(lambda: r.connected == {"/out"})
-        clock[0] += 3600 * SECOND
+        clock[0] += 3600 * 10**9
         r.resume()
-        clock[0] += SECOND
+        clock[0] += 10**9
         out.write([1], wait=True)
     with record.open(*r.files) as found:
-        assert (found.begin, found.end) == (START / SECOND + 3600, START / SECOND + 3601)
+        assert (found.begin, found.end) == (START / 10**9 + 3600, START / 10**9 + 3601)
         assert [note["what"] for note in found.notes()] == ["connected", "resume", "disconnected"]
 
 

@@ -25,6 +25,7 @@ from typing import Final, Self
 from yarpy import __version__, linger
 from yarpy.errors import LocalProtocolError
 from yarpy.kits.record.capture.batch import Batch
+from yarpy.kits.record.capture.clock_step import SystemClock
 from yarpy.kits.record.capture.disk_space import DiskSpace, Split, size_text
 from yarpy.kits.record.capture.loss import Losses
 from yarpy.kits.record.capture.notes import Notes
@@ -44,8 +45,6 @@ log = logger("yarpy.record")
 
 PERIOD: Final = 0.05  # seconds between looks at what has come
 SYNC: Final = 0.5  # seconds between the ends of waiting for the disk
-SECOND: Final = 1_000_000_000  # nanoseconds
-CLOCK_STEP: Final = SECOND // 2  # nanoseconds by which a clock that is set is told
 
 
 class Recorder:
@@ -231,7 +230,7 @@ class Recorder:
 
     def mark(self, text: str = "", ago: float = 0.0) -> None:
         """Note something about this moment, or one that was so many seconds ago."""
-        self._notes.add("mark", round(ago * SECOND), text=text[:10_000])
+        self._notes.add("mark", round(ago * 1e9), text=text[:10_000])
 
     def split(self) -> None:
         """Go on in a new file. Raises LocalProtocolError where only snapshots are written."""
@@ -288,7 +287,7 @@ class Recorder:
 
     def _write_on(self) -> None:
         queue, batch = self._queue, Batch(self._queue, self._output)
-        looked, written, step = 0.0, 0, time.time_ns() - time.monotonic_ns()
+        looked, written, clock = 0.0, 0, SystemClock()
         self._disk.look()
         try:
             while not self.failure:
@@ -306,7 +305,7 @@ class Recorder:
                 # A disk that may be full before a second is over is looked at sooner.
                 if now - looked >= 1.0 or self._output.size - written > self._disk.free // 4:
                     looked, written = now, self._output.size
-                    step = self._look_around(step, batch)
+                    self._look_around(clock, batch)
                 if last:
                     self._losses.tell(self._output.note, self._tell, self._now())
                     return
@@ -345,7 +344,7 @@ class Recorder:
             else:
                 ring.note(*note)
 
-    def _look_around(self, step: int, batch: Batch) -> int:
+    def _look_around(self, clock: SystemClock, batch: Batch) -> None:
         """Once a second: the disk, the folder, the clock, what was lost."""
         self._losses.tell(self._output.note, self._tell, self._now())
         before, state = self._disk.state, self._disk.look()
@@ -360,11 +359,9 @@ class Recorder:
             batch.again()
             self._notes.add("file gone", file=str(gone))
             self._tell(f"{gone} was taken away with all in it: the rest is in {self._output.path}")
-        now = time.time_ns() - time.monotonic_ns()
-        if abs(now - step) > CLOCK_STEP:
-            self._notes.add("clock set", seconds=(now - step) / SECOND)
-            self._tell(f"the clock was set by {(now - step) / SECOND:+.1f} s")
-        return now
+        if seconds := clock.look():
+            self._notes.add("clock set", seconds=seconds)
+            self._tell(f"the clock was set by {seconds:+.1f} s")
 
     def _sync(self) -> None:
         while not self.ended.wait(SYNC):
