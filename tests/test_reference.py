@@ -1,9 +1,11 @@
 """The pages made from the code are those that the code of today makes."""
 
+import pytest
 from support import reference
 
 import yarpy
 
+pytestmark = pytest.mark.usefixtures("no_collector")
 AGAIN = "docs are older than the code: python tests/support/reference.py"
 
 

@@ -136,13 +136,15 @@ def _code(text: str) -> str:
 def _messages() -> dict[str, list[str]]:
     """What stands in the code, by the name of the error."""
     names = {*error_names()}
+    made = re.compile(rf"\b({'|'.join(names)})\(")
     found: dict[str, set[str]] = {}
     for path in SOURCE.rglob("*.py"):
-        for node in ast.walk(ast.parse(path.read_text("utf-8"))):
+        text = path.read_text("utf-8")
+        for node in ast.walk(ast.parse(text)) if made.search(text) else ():
             if isinstance(node, ast.Call) and isinstance(node.func, ast.Name) and node.args:
-                name, text = node.func.id, _template(node.args[0])
-                if name in names and len(re.findall(r"\w{2,}", text)) > 1:
-                    found.setdefault(name, set()).add(text)
+                name, said = node.func.id, _template(node.args[0])
+                if name in names and len(re.findall(r"\w{2,}", said)) > 1:
+                    found.setdefault(name, set()).add(said)
     return {
         name: sorted(texts, key=lambda text: (_sort_key(text), text))
         for name, texts in found.items()

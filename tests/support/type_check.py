@@ -1,8 +1,9 @@
 """mypy and pyright, for what is written for programs: stubs, generated modules, the public API.
 
 Rules: they check from the folder of the program, mypy strictly; what it has learnt of numpy and of
-yarpy stays in the checkout's cache, since to learn that takes it ten seconds. pyright is a program
-of Node.js, which is a peer; yarpy's extra `test` brings pyright itself.
+yarpy stays in the checkout's cache, since to learn that takes it ten seconds: in one for each set
+of options, as what it learnt with another is of no use to it. pyright is a program of Node.js,
+which is a peer; yarpy's extra `test` brings pyright itself.
 """
 
 from __future__ import annotations
@@ -34,8 +35,9 @@ def type_check(
     folder: Path, *files: str, env: Mapping[str, str] = os.environ, options: Sequence[str] = STRICT
 ) -> subprocess.CompletedProcess[str]:
     """What mypy says about files in a folder."""
+    cache = CACHE / ("strict" if options == STRICT else "loose")
     return subprocess.run(
-        [sys.executable, "-m", "mypy", *options, "--cache-dir", str(CACHE), *files],
+        [sys.executable, "-m", "mypy", *options, "--cache-dir", str(cache), *files],
         cwd=folder,
         env=env,
         capture_output=True,
