@@ -27,7 +27,7 @@ import yarpy
 pytest.importorskip("zmq")
 
 from wrapyfi.connect.wrapper import MiddlewareCommunicator
-from wrapyfi.middlewares._side import Arrivals
+from wrapyfi.middlewares._arrivals import Arrivals
 
 register = MiddlewareCommunicator.register
 IMAGE = np.arange(2 * 3 * 3, dtype=np.uint8).reshape(2, 3, 3)

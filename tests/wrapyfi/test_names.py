@@ -36,6 +36,20 @@ PARTS = {
     "name",
     "lock",
 }
+#: methods that take or give things of libraries that are not here, such as messages of paho
+INNER = {
+    "find_plugin",
+    "get_message_type",
+    "get_topic_type",
+    "is_connected",
+    "on_message",
+    "proxy_thread",
+    "publish_params",
+    "read_port",
+    "read_socket",
+    "register_callback",
+    "subscription_monitor_thread",
+}
 
 
 SIDES = ("publishers", "listeners", "servers", "clients")
@@ -85,6 +99,31 @@ def test_names_of_the_original(original: Path) -> None:
     assert missing <= {f"standalone.{name}.args" for name in programs}  # there when they run
 
 
+def methods_of(path: Path) -> Iterator[tuple[str, str]]:
+    """The classes of a module, with the methods that others may call."""
+    for item in ast.parse(path.read_text("utf-8")).body:
+        if isinstance(item, ast.ClassDef):
+            for part in item.body:
+                if isinstance(part, ast.FunctionDef) and not part.name.startswith("_"):
+                    yield item.name, part.name
+
+
+def test_methods_of_the_original(original: Path) -> None:
+    missing = set()
+    for path in sorted(original.rglob("*.py")):
+        parts = path.relative_to(original).with_suffix("").parts
+        if parts[0] in ("tests", "plugins"):
+            continue
+        module = ".".join(part for part in parts if part != "__init__")
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore")  # as above
+            found = importlib.import_module(f"wrapyfi.{module}".rstrip("."))
+            for name, method in methods_of(path):
+                if name not in PARTS and not hasattr(getattr(found, name), method):
+                    missing.add(method)
+    assert missing == INNER
+
+
 @pytest.mark.parametrize("side", SIDES)
 def test_classes_by_their_names(side: str) -> None:
     """They are those that the decorators take, and derive from that of their middleware."""
@@ -124,6 +163,39 @@ def test_a_publisher_and_a_listener_by_hand() -> None:
         finally:
             listener.close()
             publisher.close()
+
+
+def test_connections_are_waited_for_as_long_as_is_said() -> None:
+    from wrapyfi.connect.publishers import PublisherWatchDog  # type: ignore[import-not-found]
+    from wrapyfi.listeners.yarp import YarpNativeObjectListener
+    from wrapyfi.publishers.yarp import YarpNativeObjectPublisher
+
+    with yarpy.NameServer(free_block(10)) as server, pytest.MonkeyPatch.context() as patch:
+        patch.setenv("YARPY_SERVER", f"127.0.0.1:{server.port}")
+        publisher = YarpNativeObjectPublisher("sender", "/awaited")
+        listener = YarpNativeObjectListener("hearer", "/awaited")
+        early = YarpNativeObjectListener("early", "/never")
+        hasty = YarpNativeObjectPublisher("hasty", "/hasty", should_wait=False)
+        try:
+            assert not early.establish(repeats=1)
+            assert not early.established
+            assert not hasty.await_connection()
+            assert hasty.establish()
+            watch = PublisherWatchDog()
+            watch.add_publisher(publisher)
+            watch.scan()
+            assert watch.publisher_ring == [publisher]  # nobody listens
+            assert not publisher.await_connection(repeats=1)
+            assert listener.establish()
+            assert listener.await_connection("/awaited")
+            assert publisher.await_connection()
+            watch.scan()
+            assert not watch.publisher_ring
+            publisher.publish("hello")
+            assert listener.listen() == "hello"
+        finally:
+            for side in (listener, publisher, early, hasty):
+                side.close()
 
 
 def test_helpers() -> None:

@@ -17,9 +17,11 @@ __all__ = [
     "ActionServer",
     "BagReader",
     "BagWriter",
+    "Duration",
     "Node",
     "Publisher",
     "Subscriber",
+    "Time",
     "Transforms",
     "TypeServer",
 ]
@@ -29,9 +31,11 @@ _WHERE = {
     "ActionServer": "yarpy.peers.ros.action.server",
     "BagReader": "yarpy.peers.ros.bag.reader",
     "BagWriter": "yarpy.peers.ros.bag.writer",
+    "Duration": "yarpy.peers.ros.message.message",
     "Node": "yarpy.peers.ros.node",
     "Publisher": "yarpy.peers.ros.node",
     "Subscriber": "yarpy.peers.ros.node",
+    "Time": "yarpy.peers.ros.message.message",
     "Transforms": "yarpy.peers.ros.transform.topic",
     "TypeServer": "yarpy.peers.ros.type_server",
 }
@@ -41,6 +45,8 @@ if TYPE_CHECKING:
     from yarpy.peers.ros.action.server import ActionServer as ActionServer
     from yarpy.peers.ros.bag.reader import BagReader as BagReader
     from yarpy.peers.ros.bag.writer import BagWriter as BagWriter
+    from yarpy.peers.ros.message.message import Duration as Duration
+    from yarpy.peers.ros.message.message import Time as Time
     from yarpy.peers.ros.node import Node as Node
     from yarpy.peers.ros.node import Publisher as Publisher
     from yarpy.peers.ros.node import Subscriber as Subscriber

@@ -304,12 +304,13 @@ class Node(Parameters):
     ) -> Any:
         """Call a service; the answer is an object of the response type.
 
-        `arguments` are an object of the request type, a dict of its fields, or the fields. Raises
-        UnknownName (nobody serves it), RemoteProtocolError (the server failed, and says why; or is
-        of another type), Timeout, LinkClosed, NoNameServer. Calls of a service take turns.
+        `arguments` are an object of the request type, a dict of some of its fields, a list of all,
+        or the fields. Raises UnknownName (nobody serves it), RemoteProtocolError (the server
+        failed, and says why; or is of another type), Timeout, LinkClosed, NoNameServer. Calls of a
+        service take turns.
         """
         kind = _service(type_)
-        return self._calls.call(self.resolve(service), kind, _question(kind, arguments), timeout)
+        return self._calls.call(self.resolve(service), kind, kind.request(*arguments), timeout)
 
     def wait_for_service(self, service: str, timeout: float | None = None) -> bool:
         """Wait until somebody serves it; False if time is over. Raises NoNameServer."""
@@ -411,16 +412,3 @@ def _message_class(type_: Type) -> type[RosMessage]:
 
 def _service(type_: str | Service) -> Service:
     return default_library().service(type_) if isinstance(type_, str) else type_
-
-
-def _question(kind: Service, arguments: Sequence[Any]) -> RosMessage:
-    """The request that arguments stand for."""
-    if len(arguments) == 1:
-        only = arguments[0]
-        if isinstance(only, RosMessage):
-            if not isinstance(only, kind.Request):
-                raise TypeError(f"{kind.name} is asked with a {kind.name}Request, not {only._type}")
-            return only
-        if isinstance(only, dict):
-            return kind.Request.from_bottle(only)
-    return kind.Request.from_bottle([*arguments])

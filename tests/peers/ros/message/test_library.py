@@ -88,6 +88,25 @@ def test_services(library: Library) -> None:
     assert add.full_text.startswith("int64 a")
 
 
+def test_what_stands_for_a_request(library: Library) -> None:
+    add = library.service_of("p/Add", "int64 a\nint64 b\n---\nint64 sum\n")
+    wanted = add.Request(5, 37)
+    for arguments in ([wanted], [{"a": 5, "b": 37}], [[5, 37]], [(5, 37)], [5, 37]):
+        assert add.request(*arguments) == wanted
+    with pytest.raises(DecodeError, match="expected 2 elements"):
+        add.request(5)
+    with pytest.raises(TypeError, match="p/Add is asked with p/AddRequest, not p/AddResponse"):
+        add.request(add.Response())
+    total = library.service_of("p/Sum", "int64[] items\n---\nint64 sum\n")
+    for arguments in ([[5, 37]], [[[5, 37]]], [{"items": [5, 37]}]):
+        assert [*total.request(*arguments).items] == [5, 37]  # type: ignore[attr-defined]
+    assert not len(total.request([]).items)  # type: ignore[attr-defined]
+    with pytest.raises(DecodeError, match="expected 1 elements"):
+        total.request(5, 37)
+    nothing = library.service_of("p/Stop", "---\n")
+    assert nothing.request() == nothing.request([]) == nothing.Request()
+
+
 def test_names_and_files(tmp_path: Path) -> None:
     package = tmp_path / "robot_msgs"
     for folder in ("msg", "srv"):

@@ -6,6 +6,7 @@ import pickle
 import numpy as np
 import pytest
 
+from yarpy.errors import DecodeError
 from yarpy.peers.ros.message.library import Library
 from yarpy.peers.ros.message.message import Duration, Message, Time
 
@@ -16,6 +17,24 @@ def test_times_as_seconds() -> None:
     assert Duration.from_sec(-0.25) == Duration(-1, 750_000_000)
     assert Duration(-1, 750_000_000).to_sec() == -0.25
     assert Time.from_sec(0.9999999999) == Time(1, 0)
+
+
+def test_seconds_are_a_time_wherever_one_is_wanted(library: Library) -> None:
+    every = library.message("test/Every")
+    given = {"stamp": 12.5, "span": -0.25, "stamps": [3, 1.5], "spans": [2.5, 0]}
+    wanted = every(
+        stamp=Time(12, 500_000_000),
+        span=Duration(-1, 750_000_000),
+        stamps=[Time(3, 0), Time(1, 500_000_000)],
+        spans=[Duration(2, 500_000_000), Duration()],
+    )
+    made = every(**given)
+    assert every.from_ros(b"".join(made.to_ros())) == wanted
+    assert every.from_wire(b"".join(made.to_wire())) == wanted
+    assert made.to_bottle() == wanted.to_bottle()
+    assert every.from_bottle(given) == wanted
+    with pytest.raises(DecodeError, match=r"test/Every\.stamp: -1 does not fit in time"):
+        every.from_bottle({"stamp": -1})
 
 
 def test_equality(library: Library) -> None:

@@ -12,6 +12,7 @@ from yarpy.peers.ros.message import library as library_module
 from yarpy.peers.ros.message.library import Library
 from yarpy.peers.ros.message.source import Texts
 from yarpy.peers.ros.message.stub import python, stubs
+from yarpy.peers.ros2.message.library import default_library as ros2_library
 
 
 @pytest.fixture(autouse=True)
@@ -47,6 +48,14 @@ def test_services_and_their_halves(library: Library) -> None:
     assert module.Add.md5sum == add.md5sum
     assert module.Add.Request is module.AddRequest
     assert "class _Add(Service):" in stubs([add])
+
+
+def test_seconds_are_accepted_for_a_time(library: Library) -> None:
+    text = stubs([library.message("test/Every")])
+    assert "    stamp: Time\n" in text
+    assert "        stamp: Time | float = ...," in text
+    ros2 = ros2_library().message("std_msgs/Header")
+    assert "        stamp: builtin_interfaces_Time | float | None = ...," in stubs([ros2])
 
 
 def test_comments_never_become_code() -> None:

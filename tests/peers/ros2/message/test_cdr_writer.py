@@ -21,6 +21,26 @@ def test_golden_bytes() -> None:
     assert written(LIBRARY.message("std_msgs/Empty")) == bytes.fromhex("00010000 00")
 
 
+def test_seconds_are_a_time_wherever_one_is_wanted() -> None:
+    text = "builtin_interfaces/Time at\nbuiltin_interfaces/Duration[] spans\n"
+    cls = Library([Texts({"p/T": text}, "here"), Standard()]).message("p/T")
+    parts = {"at": (12, 500_000_000), "spans": [(-1, 750_000_000), (2, 0)]}
+    wanted = cls.from_bottle(parts)
+    seconds = {"at": 12.5, "spans": [-0.25, 2]}
+    made = cls(**seconds)
+    assert cls.from_ros(b"".join(made.to_ros())) == wanted
+    assert cls.from_wire(b"".join(made.to_wire())) == wanted
+    assert made.to_bottle() == wanted.to_bottle()
+    assert cls.from_bottle(seconds) == wanted
+    time = LIBRARY.message("builtin_interfaces/Time")
+    assert time.from_bottle(12.5) == time(12, 500_000_000)
+    for wrong in ("12", float("inf"), True):
+        with pytest.raises(TypeError, match=r"p/T\.at: expected \S+/Time or seconds"):
+            written(cls, at=wrong)
+    with pytest.raises(OverflowError, match=r"p/T\.at\.sec: 3000000000 does not fit in int32"):
+        written(cls, at=3e9)
+
+
 def test_large_arrays_are_blocks_of_their_own() -> None:
     pixels = np.arange(9000, dtype="u1")
     blocks = LIBRARY.message("sensor_msgs/Image")(data=pixels).to_ros()

@@ -47,7 +47,10 @@ def test_services(names: yarpy.LocalNames) -> None:
     with ros2.Node("/adder") as adder, ros2.Node("/asker") as asker:
         adder.service("add", ADD, lambda request: {"sum": request.a + request.b})
         assert asker.client("/add", ADD).wait(HANG)
-        assert asker.call("/add", ADD, [5, 37]).sum == 42
+        for arguments in ([[5, 37]], [5, 37], [{"a": 5, "b": 37}]):
+            assert asker.call("/add", ADD, *arguments).sum == 42
+        with pytest.raises(TypeError, match="is asked with"):  # another type's bytes went out
+            asker.call("/add", ADD, ros2.load("std_msgs/msg/String")("hi"))
         with yarpy.RpcClient(f"ros2://add~{ADD}", name="/port") as port:
             assert port.ask([1, 2]).ros.sum == 3  # type: ignore[union-attr, attr-defined]
 

@@ -18,10 +18,8 @@ that cannot be spelled, are told to the client: nobody is left waiting.
 from __future__ import annotations
 
 import logging
-import queue
 import time
 from collections.abc import Callable, Mapping
-from contextlib import suppress
 from dataclasses import dataclass, field, replace
 from typing import Any, ClassVar, Protocol
 
@@ -32,14 +30,11 @@ from wrapyfi.connect.publishers import Publisher, Publishers
 from wrapyfi.connect.servers import Server, Servers
 from wrapyfi.middlewares._form import patience
 from wrapyfi.utils.core_utils import SingletonOptimized
-from yarpy.kits.wrap.inbox import Inbox
-from yarpy.kits.wrap.middleware import Failure, Received, question_of
+from yarpy.kits.wrap.middleware import Failure, question_of
 
 #: what `Form.value` gives for a message that listeners are not told of
 SKIP = object()
 _LOOK = 0.2  # seconds between two looks whether something that waits was closed
-#: pictures and sounds, or values, that a listener has not taken yet
-KEPT = (10, 100)
 
 
 class Form(Protocol):
@@ -83,9 +78,10 @@ class Nothing(metaclass=SingletonOptimized):
         return None
 
 
-def _awaited(part: Any, wanted: Callable[[], bool]) -> bool:
-    """Wait for somebody as long as is allowed, while `wanted`. Raises PortClosed."""
-    limit = patience()
+def _awaited(part: Any, wanted: Callable[[], bool], looks: int | None = None) -> bool:
+    """Wait for somebody for so many looks, else as long as is allowed, while `wanted`. Raises
+    PortClosed."""
+    limit = patience() if looks is None or looks < 0 else looks * _LOOK
     deadline = None if limit is None else time.monotonic() + limit
     while wanted():
         left = _LOOK if deadline is None else min(deadline - time.monotonic(), _LOOK)
@@ -113,13 +109,24 @@ class _Sending(Publisher):
         self.form = self.medium.topics[self.kind](options)
         self._out: Any = None
 
-    def establish(self, repeats: int = -1, **kwargs: Any) -> bool:
-        out = self._out
-        if out is None:
-            out = self._out = self.medium.out(self)
-        if self.should_wait and not _awaited(out, lambda: self._out is out):
+    def establish(self, repeats: int | None = None, **kwargs: Any) -> bool:
+        self._open()
+        found = not self.should_wait or self.await_connection(repeats=repeats)
+        if not found and (repeats is None or repeats < 0):
             raise yarpy.Timeout(f'nobody listens to "{self.out_topic}"')
-        return self.check_establishment(True)
+        return self.check_establishment(found)
+
+    def _open(self) -> Any:
+        if self._out is None:
+            self._out = self.medium.out(self)
+        return self._out
+
+    def await_connection(self, *parts: Any, repeats: int | None = None, **named: Any) -> bool:
+        """Wait until somebody listens: `repeats` times 0.2 s, else for WRAPYFI_TIMEOUT seconds, and
+        not at all where nothing `should_wait`. What else the original takes changes nothing."""
+        out = self._open()
+        looks = 0 if repeats is None and not self.should_wait else repeats
+        return _awaited(out, lambda: self._out is out, looks)
 
     def publish(self, obj: Any) -> None:
         spelled = self.form.spelled(obj)
@@ -153,16 +160,20 @@ class _Taking(Listener):
         self.form = self.medium.topics[self.kind](options)
         self._in: Any = None
 
-    def establish(self, repeats: int = -1, **kwargs: Any) -> bool:
+    def establish(self, repeats: int | None = None, **kwargs: Any) -> bool:
         self._patience = patience() if self.should_wait else 0.0
+        found = self.await_connection(repeats=repeats)
+        if not found and self.should_wait and (repeats is None or repeats < 0):
+            raise yarpy.Timeout(f'nobody publishes "{self.in_topic}"')
+        return self.check_establishment(found)
+
+    def await_connection(self, *parts: Any, repeats: int | None = None, **named: Any) -> bool:
+        """Wait until somebody publishes, as a publisher waits until somebody listens."""
         into = self._in
         if into is None:
             into = self._in = self.medium.into(self)
-        if not self.should_wait:
-            return self.check_establishment(into.wait(0.0))
-        if not _awaited(into, lambda: self._in is into):
-            raise yarpy.Timeout(f'nobody publishes "{self.in_topic}"')
-        return self.check_establishment(True)
+        looks = 0 if repeats is None and not self.should_wait else repeats
+        return _awaited(into, lambda: self._in is into, looks)
 
     def listen(self) -> Any:
         if not self.established and not self.establish():
@@ -325,71 +336,3 @@ def offer(medium: Medium) -> None:
         for kind in forms:
             name = f"{start}{kind.removeprefix(start)}{word}"
             registry.register(kind, medium.name)(type(name, (base,), {"kind": kind}))
-
-
-class Arrivals:
-    """Values that came to a listener by the threads of a library: `queue_size` of them are kept,
-    without it `usual` or `KEPT`, and the oldest go."""
-
-    def __init__(self, side: Any, usual: int | str = 0) -> None:
-        self._came_to = side.in_topic
-        keep = side.options.get("queue_size") or usual or KEPT[side.kind == "NativeObject"]
-        self._inbox = Inbox(max(int(keep), 1))
-
-    def arrived(self, came: Any) -> None:
-        with suppress(yarpy.PortClosed):
-            self._inbox.put(Received(came))
-
-    def wait(self, seconds: float) -> bool:
-        """Publishers are not waited for, as it was."""
-        return True
-
-    def receive(self, timeout: float | None) -> Any:
-        try:
-            return self._inbox.take(timeout).value
-        except yarpy.Timeout:
-            raise yarpy.Timeout(f'nothing came from "{self._came_to}"') from None
-
-    @property
-    def closed(self) -> bool:
-        return self._inbox.closed
-
-    def close(self) -> None:
-        self._inbox.close()
-
-
-class Desk:
-    """Where requests wait, each in the thread that brought it, until the program takes them."""
-
-    def __init__(self, topic: str) -> None:
-        self._topic = topic
-        self._asked: queue.SimpleQueue[Any] = queue.SimpleQueue()
-        self._closed = False
-
-    def ask(self, came: Any) -> Any:
-        """Return the program's answer: spelled, or a Failure."""
-        answered: queue.SimpleQueue[Any] = queue.SimpleQueue()
-        self._asked.put((came, answered.put))
-        if self._closed:
-            self.close()
-        return answered.get()
-
-    def take(self) -> tuple[Any, Callable[[Any], None]]:
-        """The next request, and what takes its answer. Raises PortClosed."""
-        found: tuple[Any, Callable[[Any], None]] | None = self._asked.get()
-        if found is None:
-            self._asked.put(None)
-            raise yarpy.PortClosed(f'"{self._topic}" was closed')
-        return found
-
-    def close(self) -> None:
-        """Refuse whatever waits, and what comes."""
-        self._closed = True
-        failure = Failure("PortClosed", "the server was closed")
-        try:
-            while True:
-                found = self._asked.get_nowait()
-                if found is not None:
-                    found[1](failure)
-        except queue.Empty:
-            self._asked.put(None)

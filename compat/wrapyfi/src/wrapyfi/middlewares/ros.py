@@ -16,6 +16,7 @@ from typing import Any
 
 import yarpy
 import yarpy.peers.ros
+from wrapyfi.middlewares._arrivals import Arrivals, Desk
 from wrapyfi.middlewares._ros import (
     FieldedService,
     Interfaces,
@@ -24,7 +25,7 @@ from wrapyfi.middlewares._ros import (
     TextForm,
     ros_forms,
 )
-from wrapyfi.middlewares._side import Arrivals, Desk, Medium, Nothing, offer
+from wrapyfi.middlewares._side import Medium, Nothing, offer
 from yarpy.kits.wrap.middleware import Failure
 from yarpy.peers.ros.master import DEFAULT_URI
 from yarpy.peers.ros.message.library import default_library

@@ -18,6 +18,7 @@ from importlib.util import find_spec
 from typing import Any
 
 import yarpy
+from wrapyfi.middlewares._arrivals import Arrivals, Desk
 from wrapyfi.middlewares._ros import (
     FieldedService,
     Interfaces,
@@ -26,7 +27,7 @@ from wrapyfi.middlewares._ros import (
     TextForm,
     ros_forms,
 )
-from wrapyfi.middlewares._side import Arrivals, Desk, Medium, Nothing, offer
+from wrapyfi.middlewares._side import Medium, Nothing, offer
 from yarpy.kits.wrap.middleware import Failure
 from yarpy.kits.wrap.spelling import failure, failure_of
 from yarpy.peers.ros2.dds.participant import POOL

@@ -18,8 +18,9 @@ from functools import partial
 from importlib.util import find_spec
 from typing import Any
 
+from wrapyfi.middlewares._arrivals import Arrivals
 from wrapyfi.middlewares._headed import PictureForm, SoundForm, TextForm
-from wrapyfi.middlewares._side import Arrivals, Medium, Nothing, offer
+from wrapyfi.middlewares._side import Medium, Nothing, offer
 
 if find_spec("socketio") is None:
     raise ImportError("it needs python-socketio: pip install 'yarpy-wrapyfi[websocket]'")

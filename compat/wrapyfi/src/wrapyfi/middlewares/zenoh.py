@@ -14,8 +14,9 @@ import time
 from typing import Any
 
 import yarpy
+from wrapyfi.middlewares._arrivals import Arrivals
 from wrapyfi.middlewares._headed import headed
-from wrapyfi.middlewares._side import Arrivals, Medium, Nothing, offer
+from wrapyfi.middlewares._side import Medium, Nothing, offer
 
 try:
     import zenoh

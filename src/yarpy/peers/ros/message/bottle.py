@@ -19,8 +19,8 @@ from yarpy.data.bottle import Bottle
 from yarpy.data.sig.vector import Vector
 from yarpy.data.value import Float32, Int8, Int16, Int64
 from yarpy.errors import DecodeError
-from yarpy.peers.ros.message.fault import array_of, described
-from yarpy.peers.ros.message.message import Duration, Message, Time
+from yarpy.peers.ros.message.fault import array_of, check_primitive, described
+from yarpy.peers.ros.message.message import TIMES, Duration, Message, Time, moment, parts_of
 from yarpy.peers.ros.message.model import ListOf, Primitive, Struct, Type
 
 if TYPE_CHECKING:
@@ -49,6 +49,9 @@ def _items(message: Message, path: str) -> Bottle:
 
 def _element(kind: Type, value: Any, path: str) -> Any:
     if isinstance(kind, Struct):
+        parts = parts_of(value) if kind.name in TIMES else None
+        if parts is not None:
+            return Bottle(parts)
         if not isinstance(value, Message):
             raise TypeError(f"{path}: expected {kind}, got {described(value)}")
         return _items(value, path)
@@ -61,6 +64,8 @@ def _element(kind: Type, value: Any, path: str) -> Any:
     if kind.name == "string":
         return value
     if not kind.is_number:
+        check_primitive(kind, value, path)
+        value = moment(Time, value)
         return Bottle([_signed(value.secs, 4), _signed(value.nsecs, 4)])
     if kind.letters in "fd":
         return Float32(value) if kind.size == 4 else float(value)
@@ -95,7 +100,7 @@ def from_bottle(cls: type[M], items: Any) -> M:
         kind = cls._definition.struct.fields[0].type
         if type(kind) is Primitive and kind.name == "string":
             return cls(items)  # as below
-    if isinstance(items, (str, int, float, bytes)):
+    if isinstance(items, (str, int, float, bytes)) and cls._definition.struct.name not in TIMES:
         items = [items]
     found: M = _message(cls, items, cls._type)
     return found
@@ -105,6 +110,8 @@ def _message(cls: type[Any], items: Any, path: str) -> Any:
     if isinstance(items, cls):
         return items
     fields = cls._definition.struct.fields
+    if cls._definition.struct.name in TIMES:
+        items = parts_of(items) or items
     if isinstance(items, dict):
         named = dict(zip((field.name for field in fields), cls._names, strict=True))
         unknown = next((key for key in items if key not in named), None)
@@ -141,8 +148,12 @@ def _value(cls: type[Message], kind: Type, item: Any, path: str) -> Any:
         if isinstance(item, str):
             return str.__str__(item)
         raise DecodeError(f"{path}: expected a string, got {described(item)}")
+    parts = parts_of(item)
+    if parts is not None and parts[0] < 0 and kind.name == "time":
+        raise DecodeError(f"{path}: {item} does not fit in time")
+    item = parts or item
     if not _is_list(item) or len(item) != 2:
-        raise DecodeError(f"{path}: expected (sec nsec), got {described(item)}")
+        raise DecodeError(f"{path}: expected (sec nsec) or seconds, got {described(item)}")
     part = _SECONDS[kind.name]
     pair = (_number(part, item[0], f"{path}.secs"), _number(part, item[1], f"{path}.nsecs"))
     return Time(*pair) if kind.name == "time" else Duration(*pair)

@@ -12,7 +12,7 @@ from struct import error as struct_error
 from typing import TYPE_CHECKING, Any
 
 from yarpy.data.embedded import with_article
-from yarpy.peers.ros.message.message import attribute
+from yarpy.peers.ros.message.message import TIMES, attribute, parts_of
 from yarpy.peers.ros.message.model import ListOf, Primitive, Struct, Type
 
 if TYPE_CHECKING:
@@ -70,10 +70,12 @@ def check_primitive(kind: Primitive, value: Any, path: str) -> None:
             raise TypeError(f"{path}: text that cannot be sent: {error}") from None
         return
     if not kind.is_number:
-        for name in ("secs", "nsecs"):
-            if not hasattr(value, name):
-                raise TypeError(f"{path}: expected {kind}, got {described(value)}")
-            _fit("I" if kind.name == "time" else "i", kind, getattr(value, name), f"{path}.{name}")
+        parts = parts_of(value)
+        for at, name in enumerate(("secs", "nsecs")):
+            if parts is None and not hasattr(value, name):
+                raise TypeError(f"{path}: expected {kind} or seconds, got {described(value)}")
+            part = getattr(value, name) if parts is None else parts[at]
+            _fit("I" if kind.name == "time" else "i", kind, part, f"{path}.{name}")
         return
     _fit(kind.letters, kind, value, path)
 
@@ -93,11 +95,14 @@ def _fit(letter: str, kind: Primitive, value: Any, path: str) -> None:
 
 def _check(kind: Type, value: Any, path: str) -> None:
     if isinstance(kind, Struct):
-        for field in kind.fields:
+        parts = parts_of(value) if kind.name in TIMES else None
+        for at, field in enumerate(kind.fields):
             name = attribute(field)
-            if not hasattr(value, name):
-                raise TypeError(f"{path}: expected {kind}, got {described(value)}")
-            _check(field.type, getattr(value, name), f"{path}.{field.name}")
+            if parts is None and not hasattr(value, name):
+                wanted = f"{kind} or seconds" if kind.name in TIMES else kind
+                raise TypeError(f"{path}: expected {wanted}, got {described(value)}")
+            part = getattr(value, name) if parts is None else parts[at]
+            _check(field.type, part, f"{path}.{field.name}")
     elif isinstance(kind, ListOf):
         _check_list(kind, value, path)
     elif isinstance(kind, Primitive):

@@ -51,6 +51,25 @@ class Service:
     def full_text(self) -> str:
         return self.definition.full_text
 
+    def request(self, *arguments: Any) -> Message:
+        """Return the request that arguments stand for: an object of its type, a dict of some of its
+        fields, a list of all of them, or the fields. Raises TypeError, DecodeError."""
+        if len(arguments) != 1:
+            return self.Request.from_bottle([*arguments])
+        (only,) = arguments
+        if isinstance(only, Message):
+            own = self.Request
+            if (only._type, only._md5sum) != (own._type, own._md5sum):
+                raise TypeError(f"{self.name} is asked with {own._type}, not {only._type}")
+            return only
+        try:
+            return self.Request.from_bottle(only)
+        except DecodeError as error:
+            try:
+                return self.Request.from_bottle([only])
+            except DecodeError:
+                raise error from None
+
     def __repr__(self) -> str:
         return f"<service {self.name}>"
 

@@ -3,8 +3,9 @@
 Rules: a class of a type has the fields of its `.msg` file as attributes and its constants as class
 attributes. What begins with an underscore is not a field, since ROS has none that do: `_type`,
 `_md5sum` and `_full_text` are named as in rospy. A field that Python or this class needs the name
-of has a `_` behind it. Values are checked when they are sent, not when they are assigned. The
-methods that read and write are those of the class that `factory` makes.
+of has a `_` behind it. Values are checked when they are sent, not when they are assigned; where
+a time is wanted, a number of seconds is one. The methods that read and write are those of the class
+that `factory` makes.
 """
 
 from __future__ import annotations
@@ -54,6 +55,25 @@ class Duration(NamedTuple):
     @classmethod
     def from_sec(cls, seconds: float) -> Self:
         return cls(*_split(seconds))
+
+
+#: types of two fields, seconds and nanoseconds; ROS 2 has messages for them
+TIMES: Final = frozenset(
+    ("time", "duration", "builtin_interfaces/Time", "builtin_interfaces/Duration")
+)
+
+
+def parts_of(value: Any) -> tuple[int, int] | None:
+    """Return a number of seconds as seconds and nanoseconds; None for what is no such number."""
+    if isinstance(value, float):
+        return _split(value) if math.isfinite(value) else None
+    return (value, 0) if isinstance(value, int) and not isinstance(value, bool) else None
+
+
+def moment(kind: Callable[[int, int], Any], value: Any) -> Any:
+    """Return a number of seconds as a time of this kind, whatever else as it is."""
+    parts = parts_of(value)
+    return value if parts is None else kind(*parts)
 
 
 def _split(seconds: float) -> tuple[int, int]:

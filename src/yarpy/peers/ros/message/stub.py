@@ -12,7 +12,7 @@ from typing import Any
 
 from yarpy.peers.ros.message.factory import annotation
 from yarpy.peers.ros.message.library import Service
-from yarpy.peers.ros.message.message import Message, attribute
+from yarpy.peers.ros.message.message import TIMES, Message, attribute
 from yarpy.peers.ros.message.model import ListOf, Primitive, Struct, Type
 
 Loaded = type[Message] | Service
@@ -140,11 +140,13 @@ def _annotated(kind: Type, names: dict[str, str]) -> str:
 
 def _accepted(kind: Type, names: dict[str, str]) -> str:
     """Return the annotation of what may be assigned to a field: any numbers for an array of
-    them."""
+    them, seconds for a time."""
     element: Any = kind.element if isinstance(kind, ListOf) else None
     if isinstance(element, Primitive) and element.is_number:
         return "ArrayLike"
     found = _annotated(kind, names)
+    if not isinstance(kind, ListOf) and kind.name in TIMES:
+        found += " | float"
     return found if isinstance(kind, Primitive) else f"{found} | None"
 
 

@@ -35,7 +35,15 @@ from yarpy.errors import DecodeError, Truncated
 from yarpy.limit import limits
 from yarpy.peers.ros.message.bottle import from_bottle
 from yarpy.peers.ros.message.fault import array_of, fault
-from yarpy.peers.ros.message.message import Duration, Message, Time, attribute
+from yarpy.peers.ros.message.message import (
+    TIMES,
+    Duration,
+    Message,
+    Time,
+    attribute,
+    moment,
+    parts_of,
+)
 from yarpy.peers.ros.message.model import ListOf, Primitive, Struct, Type
 from yarpy.peers.ros.message.writer import joined
 
@@ -72,8 +80,10 @@ def to_wire(message: Message) -> Blocks:
 
 def _write(struct: Struct, message: Any, add: Callable[[bytes | memoryview], None]) -> None:
     add(_HEAD.pack(LIST, len(struct.fields)))
-    for field in struct.fields:
-        _write_value(field.type, getattr(message, attribute(field)), add)
+    parts = parts_of(message) if struct.name in TIMES else None
+    for at, field in enumerate(struct.fields):
+        value = getattr(message, attribute(field)) if parts is None else parts[at]
+        _write_value(field.type, value, add)
 
 
 def _write_value(kind: Type, value: Any, add: Callable[[bytes | memoryview], None]) -> None:
@@ -88,7 +98,7 @@ def _write_value(kind: Type, value: Any, add: Callable[[bytes | memoryview], Non
             text = value.encode("utf-8", "surrogateescape")
             add(_HEAD.pack(STRING, len(text)) + text)
         else:
-            letter = kind.letters[0]
+            letter, value = kind.letters[0], moment(Time, value)
             add(Packing(f"<iii{letter}i{letter}").pack(LIST, 2, 1, value.secs, 1, value.nsecs))
 
 

@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING, Any, Final
 from yarpy.data.generated import Code
 from yarpy.data.value import BIG, Blocks
 from yarpy.peers.ros.message.fault import array_of, fault, wrong_length
-from yarpy.peers.ros.message.message import Message, attribute
+from yarpy.peers.ros.message.message import TIMES, Duration, Message, Time, attribute, moment
 from yarpy.peers.ros.message.model import ListOf, Primitive, Struct, Type
 
 if TYPE_CHECKING:
@@ -103,6 +103,7 @@ class Writer:
 
     def value(self, kind: Type, source: str, path: str) -> None:
         if isinstance(kind, Struct):
+            source = self.timed(kind, source)
             if kind.parts > self.inline:
                 self.flush()
                 self.inner(kind, source)
@@ -140,9 +141,19 @@ class Writer:
 
     def time(self, kind: Primitive, source: str) -> None:
         """Add code that writes a time or duration, which ROS 2 has a struct for."""
-        time = self.code.variable()
-        self.code.line(f"{time} = {source}")
+        time = self.moment(Time if kind.name == "time" else Duration, source)
         self.code.number(kind.letters, f"{time}.secs", f"{time}.nsecs")
+
+    def timed(self, kind: Struct, source: str) -> str:
+        """A message in a message; where it is a time, a number of seconds is one."""
+        return self.moment(self.classes[kind], source) if kind.name in TIMES else source
+
+    def moment(self, cls: type[Any], source: str) -> str:
+        """Add code that makes a time of this class of a number of seconds."""
+        time, kind, made = self.code.variable(), self.code.name(cls), self.code.name(moment)
+        self.code.line(f"{time} = {source}")
+        self.code.line(f"if type({time}) is not {kind}: {time} = {made}({kind}, {time})")
+        return time
 
     def list(self, kind: ListOf, source: str, path: str) -> None:
         items = self.code.variable()
@@ -166,7 +177,7 @@ class Writer:
         self.code.line(f"for _x in {items}:")
         self.code.indent(1)
         if isinstance(element, Struct):
-            self.inner(element, "_x")
+            self.inner(element, self.timed(element, "_x"))
         else:
             self.displaced()
             self.value(element, "_x", path)

@@ -18,7 +18,6 @@ from typing import Any, Final
 from yarpy.errors import DecodeError, LinkClosed, UnknownName, YarpError
 from yarpy.limit import ROS2_QUESTIONS
 from yarpy.log import logger
-from yarpy.peers.ros.message.message import Message
 from yarpy.peers.ros2.carrier import GONE, Incoming, Outgoing
 from yarpy.peers.ros2.dds.pair import Came, Pair, type_of
 from yarpy.peers.ros2.dds.participant import POOL
@@ -164,8 +163,7 @@ class DdsCaller:
         serves it), LinkClosed (the server goes meanwhile). Raises TypeError, ValueError or
         DecodeError for what is no request."""
         kind = self.kind
-        if not isinstance(request, Message):
-            request = kind.Request.from_bottle(request)
+        request = kind.request(request)
         found: Future[Any] = Future()
         found.set_running_or_notify_cancel()
 

@@ -190,14 +190,16 @@ class Node:
         AddressError, UnknownType."""
         return self._caller(self.resolve(name, "rosservice"), type_)
 
-    def call(self, name: str, type_: str, request: object, timeout: float | None = 10.0) -> Any:
-        """Ask a service; the answer is an object of the response type. Raises UnknownName (nobody
-        serves it), RemoteProtocolError (the server fails), Timeout, LinkClosed."""
+    def call(self, name: str, type_: str, *arguments: Any, timeout: float | None = 10.0) -> Any:
+        """Ask a service; the answer is an object of the response type. `arguments` are an object
+        of the request type, a dict of some of its fields, a list of all, or the fields. Raises
+        UnknownName (nobody serves it), RemoteProtocolError (the server fails), Timeout,
+        LinkClosed."""
         whole = self.resolve(name, "rosservice")
         found = self._callers.get((whole, type_))
         if found is None:
             found = self._callers.setdefault((whole, type_), self._caller(whole, type_))
-        return found.call(request, timeout)
+        return found.call(found.kind.request(*arguments), timeout)
 
     # -- parameters -------------------------------------------------------------------------------
 

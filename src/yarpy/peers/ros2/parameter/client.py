@@ -84,4 +84,4 @@ class RemoteParameters:
 
     def _ask(self, service: str, request: dict[str, Any]) -> Any:
         caller = self._caller(service)
-        return caller.call(caller.kind.Request.from_bottle(request), self.timeout)
+        return caller.call(request, self.timeout)

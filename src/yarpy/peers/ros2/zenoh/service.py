@@ -16,7 +16,6 @@ from typing import Any
 
 from yarpy.errors import DecodeError, LinkClosed, RemoteProtocolError, UnknownName
 from yarpy.log import logger
-from yarpy.peers.ros.message.message import Message
 from yarpy.peers.ros2 import kind as kinds
 from yarpy.peers.ros2.carrier import Incoming, Outgoing
 from yarpy.peers.ros2.exchange import SLICE, Question, Worker, answer_with, result_of
@@ -103,8 +102,7 @@ class Caller(Endpoint):
         meanwhile). Raises TypeError, ValueError or DecodeError for what is no request."""
         kind, key, name = self.kind, self.key, self.name
         assert key is not None
-        if not isinstance(request, Message):
-            request = kind.Request.from_bottle(request)
+        request = kind.request(request)
         found: Future[Any] = Future()
         found.set_running_or_notify_cancel()
         served = self.is_served()
