@@ -8,7 +8,7 @@ from concurrent.futures import Future
 from typing import Any
 
 import pytest
-from support.wait import wait_until
+from support.wait import HANG, wait_until
 
 from yarpy.errors import Timeout
 from yarpy.limit import ROS2_QUESTIONS
@@ -49,8 +49,20 @@ def test_a_worker_takes_one_after_the_other(caplog: pytest.LogCaptureFixture) ->
     assert done == sorted(done)
     assert "a defect" in caplog.text
     worker.close()
-    worker.thread.join()
+    worker.threads[0].join()
     assert not worker.put(act, 1)
+
+
+def test_a_worker_of_several_threads_takes_as_many_at_once() -> None:
+    worker, both = Worker("test", threads=2), threading.Barrier(3)
+    for item in range(2):
+        assert worker.put(lambda _: both.wait(HANG), item)
+    both.wait(HANG)  # neither gets here alone
+    worker.close()
+    for thread in worker.threads:
+        thread.join()
+    with pytest.raises(ValueError, match="0 threads answer nothing"):
+        Worker("test", threads=0)
 
 
 def test_questions_are_answered_once() -> None:

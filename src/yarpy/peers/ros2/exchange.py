@@ -1,6 +1,6 @@
 """What nodes of ROS 2 need whatever carries their messages.
 
-    Worker       a thread that takes what comes for several endpoints, one after the other
+    Worker       a thread that takes what comes for several endpoints, one after the other, or some
     Question     what a service is asked, with the way back
 
 Rules: an answer is an object of the response type, or a list or dict of its fields. Futures are
@@ -39,13 +39,20 @@ class Serving(Protocol):
 
 
 class Worker:
-    """Takes what comes, one item after the other, until `close`. `name` is the thread's."""
+    """Takes what comes, one item after the other, until `close`; with more threads, as many side by
+    side. `name` is that of all of them. Raises ValueError for less than one."""
 
-    def __init__(self, name: str) -> None:
+    def __init__(self, name: str, threads: int = 1) -> None:
+        if threads < 1:
+            raise ValueError(f"{threads} threads answer nothing: say 1 or more")
+        self._name = name
         self._queue: Queue[tuple[Callable[[Any], None], Any]] = Queue(ROS2_QUESTIONS)
         self._over = False
-        self.thread = threading.Thread(target=self._run, name=name, daemon=True)
-        self.thread.start()
+        self.threads = [
+            threading.Thread(target=self._run, name=name, daemon=True) for _ in range(threads)
+        ]
+        for thread in self.threads:
+            thread.start()
 
     def put(self, act: Callable[[Any], None], item: Any) -> bool:
         """Let `act(item)` be called; return False if too much waits already."""
@@ -64,10 +71,10 @@ class Worker:
             try:
                 act(item)
             except Exception:
-                log.exception("%s: a defect", self.thread.name)
+                log.exception("%s: a defect", self._name)
 
     def close(self) -> None:
-        """Let the thread end. Idempotent."""
+        """Let the threads end. Idempotent."""
         self._over = True
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import threading
 from typing import Any
 
 import pytest
@@ -91,6 +92,21 @@ def test_who_goes_during_a_call(here: None, own: str) -> None:
     caller.close()
     with pytest.raises(UnknownName):
         caller.ask([1, 2]).result(HANG)
+
+
+def test_slow_questions_are_answered_side_by_side(here: None, own: str) -> None:
+    both = threading.Barrier(2)
+
+    def meet(request: Any) -> list[int]:
+        both.wait(HANG)  # for the other question
+        return [request.a]
+
+    with ros2.Node(own, rmw="dds") as node:
+        node.service(f"{own}/x", ADD, meet, threads=2)
+        asker = node.client(f"{own}/x", ADD)
+        assert asker.wait(HANG)
+        asked = [asker.ask([number, 0]) for number in range(2)]
+        assert [each.result(HANG).sum for each in asked] == [0, 1]
 
 
 def test_a_failure_is_logged(here: None, own: str, caplog: pytest.LogCaptureFixture) -> None:

@@ -172,15 +172,19 @@ class Node:
 
     # -- services ---------------------------------------------------------------------------------
 
-    def service(self, name: str, type_: str, handler: Callable[[Any], object]) -> Answerer:
+    def service(
+        self, name: str, type_: str, handler: Callable[[Any], object], *, threads: int = 1
+    ) -> Answerer:
         """Serve a service: `handler(request)` returns the response, an object or a list or dict of
-        its fields. What it raises is told to the client. Raises AddressError, UnknownType."""
+        its fields. What it raises is told to the client. Questions are answered one after the
+        other; with more `threads`, as many side by side. Raises AddressError, UnknownType,
+        ValueError."""
 
         def answer(question: Question) -> None:
             found = handler(question.request)
             question.answer(made.kind.Response() if found is None else found)
 
-        worker = self._keep(Worker(f"yarpy service {name}"))
+        worker = self._keep(Worker(f"yarpy service {name}", threads))
         whole = self.resolve(name, "rosservice")
         made = self._answer(whole, type_, answer, worker, None)
         return made
