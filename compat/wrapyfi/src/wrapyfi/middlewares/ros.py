@@ -205,6 +205,10 @@ class _BareService:
     def question(self, text: str) -> Any:
         return self.Request(text)
 
+    def request(self, question: Any) -> Any:
+        """As a service of a file: the question is made already."""
+        return question
+
     def text(self, question: Any) -> str:
         return str(question.data)
 
