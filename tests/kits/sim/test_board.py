@@ -60,6 +60,21 @@ def test_speeds_and_stop(board: Board, clock: Clock):
     assert board.encoder_speeds() == [0.0] * 6
 
 
+def test_what_controllers_follow(board: Board, clock: Clock):
+    """In reference mode iCub's Cartesian controller lives on it."""
+    position, speed = board.pids["pos"], board.pids["vel"]
+    board.position_move([1], [45.0])
+    clock.now += 0.3
+    before = position.targets[1]
+    assert 1.0 < before < 45.0 and speed.targets[1] > 50
+    there = board.encoders()[1] + position.errors()[1]
+    assert there == pytest.approx(before) and abs(position.errors()[1]) < 1.0
+    assert board.encoder_speeds()[1] + speed.errors()[1] == pytest.approx(speed.targets[1])
+    assert position.outputs() == board.encoder_accelerations()
+    clock.now += 2.0
+    assert position.targets[1] == 45.0 and position.errors() == [0.0] * 6
+
+
 def test_direct_positions(board: Board, clock: Clock):
     board.switch_control_modes([3, 4], ["posd", "posd"])
     board.position_direct([3, 4], [5.0, -5.0])

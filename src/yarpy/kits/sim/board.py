@@ -1,4 +1,8 @@
-"""Board: the joints of a body as a control board, for `yarpy.devices.ControlBoardServer`."""
+"""Board: the joints of a body as a control board, for `yarpy.devices.ControlBoardServer`.
+
+Rules: a controller of positions follows the trajectory, moment by moment, and one of speeds how
+fast it goes; both put out the acceleration of the joint.
+"""
 
 from __future__ import annotations
 
@@ -6,6 +10,7 @@ from collections.abc import Callable, Iterable, Sequence
 from typing import Generic, TypeVar
 
 from yarpy.kits.devices.control_board.interface import ControlMode, InteractionMode
+from yarpy.kits.devices.simulated.pids import SimulatedPids
 from yarpy.kits.sim.body import Body, J
 from yarpy.kits.sim.joint import Joint
 from yarpy.kits.sim.reference import Reference
@@ -23,6 +28,21 @@ class Board(Generic[J]):
         self.axis_names = [axis.name for axis in axes]
         self.axis_types = [axis.kind for axis in axes]
         self._time = body.time
+        count = len(axes)
+        self.pids = {
+            "pos": SimulatedPids(
+                count,
+                lambda: self._each(lambda joint: joint.reference.position - joint.position),
+                self.encoder_accelerations,
+                lambda: self._each(lambda joint: joint.reference.position),
+            ),
+            "vel": SimulatedPids(
+                count,
+                lambda: self._each(lambda joint: joint.reference.speed - joint.speed),
+                self.encoder_accelerations,
+                lambda: self._each(lambda joint: joint.reference.speed),
+            ),
+        }
 
     # -- what is measured ---------------------------------------------------------------------
 

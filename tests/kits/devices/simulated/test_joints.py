@@ -22,3 +22,11 @@ def test_members() -> None:
     assert joints.control_modes() == ["vel", "idl"]
     joints.switch_interaction_modes([0], ["comp"])
     assert joints.interaction_modes() == ["comp", "stif"] and all(joints.motion_done())
+
+
+def test_controllers_as_those_of_cpp() -> None:
+    joints = SimulatedJoints(["yaw", "roll"])
+    joints.pids["vel"].targets = [1.0, 2.0]
+    found = {kind: (pids.errors()[1], pids.outputs()[1]) for kind, pids in joints.pids.items()}
+    assert found == {"pos": (0.1, 11.1), "vel": (0.2, 11.2), "cur": (0.3, 11.3), "trq": (0.4, 11.4)}
+    assert joints.pids["pos"].targets == [0.0, 0.0] and joints.pids["vel"].targets == [1.0, 2.0]

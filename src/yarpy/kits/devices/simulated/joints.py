@@ -1,12 +1,14 @@
 """SimulatedJoints: a control board without hardware, fakeMotionControl in C++.
 
 Rules: it has the members that `control_board.interface` describes, and does at once what it is
-told.
+told. Errors and outputs of its controllers are the numbers that fakeMotionControl has.
 """
 
 from __future__ import annotations
 
 from collections.abc import Sequence
+
+from yarpy.kits.devices.simulated.pids import Read, SimulatedPids
 
 
 class SimulatedJoints:
@@ -21,6 +23,10 @@ class SimulatedJoints:
         self.position_limits = [(-180.0, 180.0)] * count
         self.velocity_limits = [(0.0, 100.0)] * count
         self.automatic_brakes = [False] * count
+        self.pids = {
+            kind: SimulatedPids(count, *_measured(number, count))
+            for number, kind in enumerate(("pos", "vel", "cur", "trq"), 1)
+        }
         self._at = [0.0] * count
         self._torques = [0.0] * count
         self._braked = [False] * count
@@ -81,3 +87,9 @@ class SimulatedJoints:
     def switch_interaction_modes(self, joints: Sequence[int], modes: Sequence[str]) -> None:
         for joint, mode in zip(joints, modes, strict=True):
             self._stiff[joint] = mode
+
+
+def _measured(number: int, count: int) -> tuple[Read, Read]:
+    """Return what reads errors and outputs of the controllers of a kind."""
+    first = 1 + number / 10
+    return lambda: [number / 10] * count, lambda: [first + 10 * joint for joint in range(count)]
