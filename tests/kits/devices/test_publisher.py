@@ -4,6 +4,7 @@ import threading
 import pytest
 from support.wait import wait_until
 
+from yarpy import clock
 from yarpy.kits.devices.publisher import Publisher
 
 
@@ -39,6 +40,40 @@ def test_a_step_may_end_it():
     publisher = Publisher("/head", 0.001, step)
     ready.set()
     assert ended.wait(20)
+
+
+class Hand(clock.SystemClock):
+    """A clock that is set by hand; `over`: until when it is waited for."""
+
+    time, over = 1000.0, 0.0
+
+    def monotonic(self) -> float:
+        return self.time
+
+    def wait(self, event, seconds):
+        self.over = self.time + seconds
+        while not event.wait(0.002):
+            if self.time >= self.over:
+                return False
+        return True
+
+
+def test_it_has_the_clock_of_the_program(monkeypatch):
+    hand, steps = Hand(), []
+
+    def step():
+        steps.append(hand.time)
+        if len(steps) == 2:
+            hand.time = 3.0  # set back: it goes on a period later, not when it is 1020 again
+
+    monkeypatch.setattr(clock, "_current", hand)
+    publisher = Publisher("/head", 10.0, step)
+    for until in (1010.0, 13.0):
+        wait_until(lambda until=until: hand.over == until)
+        hand.time = until
+    wait_until(lambda: len(steps) == 3)
+    publisher.close()
+    assert steps == [1000.0, 1010.0, 13.0]
 
 
 @pytest.mark.parametrize("period", [0, -1.0, float("nan"), float("inf")])

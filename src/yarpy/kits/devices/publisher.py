@@ -1,17 +1,18 @@
 """A thread that calls a function at a fixed rate, for servers that publish.
 
 Rules: the thread is named after its server; a step that takes too long delays the next one, and
-missed steps are skipped; what a step raises is logged, and the next one still runs.
+missed steps are skipped; what a step raises is logged, and the next one still runs. The period is
+of the clock of the program (`yarpy.clock`), which may be set back.
 """
 
 from __future__ import annotations
 
 import threading
-import time
 from collections.abc import Callable
 from math import isfinite
 from typing import Final
 
+from yarpy import clock
 from yarpy.kits.devices.refusal import Complaints
 
 #: Seconds that a running step may take once its server is being closed.
@@ -32,15 +33,20 @@ class Publisher:
         self._thread.start()
 
     def _run(self) -> None:
-        due = time.monotonic()
-        while not self._ended.wait(max(0.0, due - time.monotonic())):
+        due = clock.current().monotonic()
+        while not self._sleep(due):
             try:
                 self._step()
             except Exception as error:
                 if self._ended.is_set():
                     return
                 self._complain("publishing", error)
-            due = max(due + self.period, time.monotonic())
+            due = max(due + self.period, clock.current().monotonic())
+
+    def _sleep(self, due: float) -> bool:
+        """Wait until then, but no longer than the period; return whether it was closed."""
+        time = clock.current()
+        return time.wait(self._ended, min(due - time.monotonic(), self.period))
 
     def close(self) -> None:
         """End the thread and wait for it, but not forever if it is stuck in a device."""

@@ -10,6 +10,7 @@ from support.ros_graph import ros_graph
 from support.wait import HANG, wait_until
 
 import yarpy
+from yarpy.clock import spelled
 
 ARM = Path(__file__).parents[3] / "support" / "arm.xml"
 
@@ -41,6 +42,37 @@ def test_a_whole_icub(cli, names):
         with yarpy.RpcClient("/icubSim/right_arm/rpc:i", names=names) as arm:
             assert arm.call("get", "axes")[2] == 16
             assert arm.call("get", "enc", 3)[2] == 15  # an elbow cannot be straight
+        process.signal(signal.SIGINT)
+        assert process.wait() == 0, process.stderr
+
+
+def test_time_of_the_network(cli, names, monkeypatch):
+    """What moves, what is answered and what is sent has the time of the clock."""
+    monkeypatch.setitem(cli.environment, "YARP_CLOCK", "/clock")
+    ports = ("head/state:o", "cam/left", "inertial/measures:o")
+    with (
+        yarpy.Port("/clock", names=names) as clock,
+        cli.start("sim", "--size", "64x48") as process,
+    ):
+        ticks = iter(range(1, 100_000))
+
+        def tick() -> bool:
+            return clock.write(yarpy.Bottle(spelled(next(ticks) / 1000)))
+
+        wait_until(lambda: tick() and process.stdout)
+        process.wait_line("^/icubSim is ready", stream="out", timeout=HANG)
+        with yarpy.RpcClient("/icubSim/head/rpc:i", names=names) as head:
+            assert head.call("set", "pos", 1, 20) == ["ok"]
+            assert head.call("get", "enc", 1)[2] < 20  # it does not move while the clock stands
+            clock.write(yarpy.Bottle([100, 0]))
+            wait_until(lambda: abs(head.call("get", "enc", 1)[2] - 20) < 0.01)
+            assert head.call("get", "enc", 1)[5] == 100
+        for source in ports:
+            heard: list[yarpy.Message] = []
+            with yarpy.BufferedPort("/sim/listener", callback=heard.append, names=names) as ear:
+                ear.listen_to(f"/icubSim/{source}")
+                wait_until(lambda heard=heard: tick() and heard)
+                assert 0 < heard[0].stamp.time <= 100
         process.signal(signal.SIGINT)
         assert process.wait() == 0, process.stderr
 

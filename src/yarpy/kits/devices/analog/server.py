@@ -14,12 +14,12 @@ Source: analogServer of YARP 3.x (AnalogWrapper).
 from __future__ import annotations
 
 import threading
-import time
 from collections.abc import Mapping, Sequence
 from contextlib import ExitStack
 from functools import partial
 from typing import TYPE_CHECKING, Any
 
+from yarpy import clock
 from yarpy.data.bottle import Bottle
 from yarpy.data.sig.vector import Vector
 from yarpy.data.stamp import Stamp
@@ -114,7 +114,7 @@ class AnalogSensorServer(Closeable):
         if not listening:
             return
         values = self._sensor.use("channels", _numbers)
-        self._stamp = self._stamp.next(time.time())
+        self._stamp = self._stamp.next(clock.now())
         for readers, channels in listening:
             if channels is not None and channels.stop > len(values):
                 raise Refused(f"there are {len(values)} channels, not {channels.stop}")

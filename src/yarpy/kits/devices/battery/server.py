@@ -13,11 +13,11 @@ Source: battery_nws_yarp of YARP 3.x and 4.0.
 from __future__ import annotations
 
 import threading
-import time
 from collections.abc import Callable
 from contextlib import ExitStack
 from typing import Final
 
+from yarpy import clock
 from yarpy.data.bottle import Bottle
 from yarpy.data.stamp import Stamp
 from yarpy.data.value import Vocab
@@ -102,7 +102,7 @@ class BatteryServer(Closeable):
         if status not in BATTERY:
             raise Refused(f"status() is one of {', '.join(BATTERY)}, not {status!r}")
         data = BatteryData(**read, status=BATTERY.index(status))
-        self._stamp = self._stamp.next(time.time())
+        self._stamp = self._stamp.next(clock.now())
         fields = [data.voltage, data.current, data.charge, data.temperature, data.status]
         self._readers.write(
             lambda: data if self._newer else Bottle(fields),

@@ -6,10 +6,10 @@ Rules: those of `access`. Targets that a device does not remember itself are rem
 from __future__ import annotations
 
 import threading
-import time
 from collections.abc import Mapping, Sequence
 from typing import Any, Final
 
+from yarpy import clock
 from yarpy.kits.devices.access import Access
 from yarpy.kits.devices.kind import FLOAT, JOINT_TYPE, Kind
 from yarpy.kits.devices.refusal import Complaints, Refused
@@ -62,7 +62,7 @@ class Board(Access):
         """When the encoders were read, seconds."""
         if self.has("timestamps"):
             return super().values("timestamps")
-        return [time.time()] * self.count
+        return [clock.now()] * self.count
 
     def apply(self, member: str, joints: Sequence[int], values: Sequence[Any] | None) -> None:
         if member == "relative_move" and values is not None:

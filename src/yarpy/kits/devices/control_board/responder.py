@@ -12,12 +12,12 @@ includes failed requests. Extra elements are ignored, as in C++.
 
 from __future__ import annotations
 
-import time
 from collections.abc import Callable, Sequence
 from itertools import count
 from reprlib import repr as shown
 from typing import Any, Final
 
+from yarpy import clock
 from yarpy.data.bottle import Bottle
 from yarpy.data.value import Vocab
 from yarpy.kits.devices.access import Access
@@ -178,7 +178,7 @@ class Responder:
 
     def _stamped(self, reply: Callable[[], list[Any]]) -> list[Any]:
         number = next(self._count) & 0x7FFFFFFF  # counted even if the request fails
-        return [*reply(), Vocab("tsta"), number, time.time()]
+        return [*reply(), Vocab("tsta"), number, clock.now()]
 
     # -- interfaces with their own form -------------------------------------------------------
 

@@ -11,11 +11,11 @@ from __future__ import annotations
 
 import copy
 import threading
-import time
 from collections.abc import Callable, Sequence
 from contextlib import ExitStack
 from typing import Any, ClassVar, Final
 
+from yarpy import clock
 from yarpy.data.bottle import Bottle
 from yarpy.data.sig.vector import Vector
 from yarpy.data.stamp import Stamp
@@ -191,7 +191,7 @@ class ControllerServer(Closeable):
                 for each, member in self.STATES.items()
                 if self._out[each].outputs
             }
-        self._stamp = self._stamp.next(time.time())
+        self._stamp = self._stamp.next(clock.now())
         for each, values in told.items():
             self._out[each].write(Vector([float(value) for value in values]), self._stamp)
         if self._done:
@@ -205,4 +205,4 @@ class ControllerServer(Closeable):
             self._tell("motion-done")
 
     def _tell(self, kind: str, *more: float) -> None:
-        self._events.write(Bottle([kind, time.time(), *more]))
+        self._events.write(Bottle([kind, clock.now(), *more]))

@@ -11,10 +11,10 @@ Source: frameGrabber_nws_yarp of YARP 3.x and 4.0.
 from __future__ import annotations
 
 import threading
-import time
 from contextlib import ExitStack
 from typing import Any, Final
 
+from yarpy import clock
 from yarpy.data.bottle import Bottle
 from yarpy.data.sig.image import Image
 from yarpy.data.stamp import Stamp
@@ -114,7 +114,7 @@ class FrameGrabberServer(Closeable):
             image = self._grab()
         except Refused:
             return  # no image, or an error, which was logged
-        when = self._camera.ask("timestamp") if self._camera.has("timestamp") else time.time()
+        when = self._camera.ask("timestamp") if self._camera.has("timestamp") else clock.now()
         self._responder.size = image.width, image.height
         self._stamp = self._stamp.next(float(when))
         self.images.write(image, self._stamp)

@@ -12,11 +12,11 @@ Source: rangefinder2D_nws_yarp of YARP 3.x and 4.0.
 from __future__ import annotations
 
 import threading
-import time
 from collections.abc import Callable, Sequence
 from contextlib import ExitStack
 from typing import Any, Final
 
+from yarpy import clock
 from yarpy.data.bottle import Bottle
 from yarpy.data.sig.vector import Vector
 from yarpy.data.stamp import Stamp
@@ -155,7 +155,7 @@ class LaserServer(Closeable):
         if condition not in CONDITIONS:
             raise Refused(f"condition() is one of {', '.join(CONDITIONS)}, not {condition!r}")
         scan = LaserScan2D(first, last, near, far, Vector(ranges), CONDITIONS.index(condition))
-        self._stamp = self._stamp.next(time.time())
+        self._stamp = self._stamp.next(clock.now())
         data = scan.to_wire()[0]
         self._readers.write(lambda: Encoded(data), lambda: Encoded(to_yarp4(data)), self._stamp)
 

@@ -16,11 +16,11 @@ Source: multipleanalogsensorsserver of YARP 3.x and 4.0.
 from __future__ import annotations
 
 import threading
-import time
 from collections.abc import Mapping
 from contextlib import ExitStack
 from typing import Any, Final
 
+from yarpy import clock
 from yarpy.data.bottle import Bottle
 from yarpy.data.stamp import Stamp
 from yarpy.data.yarp4 import to_yarp4
@@ -94,7 +94,7 @@ class MultiSensorServer(Closeable):
     # -- reading the device -------------------------------------------------------------------
 
     def _read_first(self) -> None:
-        now = time.time()
+        now = clock.now()
         for kind in KINDS:
             if not self._sensors.has(kind):
                 continue
@@ -157,7 +157,7 @@ class MultiSensorServer(Closeable):
                 return found
 
             try:
-                fresh[kind] = self._sensors.use(kind, check), time.time()
+                fresh[kind] = self._sensors.use(kind, check), clock.now()
             except Refused:
                 continue  # logged; the last values remain, with their time
         times = self._times()
@@ -171,7 +171,7 @@ class MultiSensorServer(Closeable):
         if not self._readers:
             return
         self._read()
-        self._stamp = self._stamp.next(time.time())
+        self._stamp = self._stamp.next(clock.now())
         self._readers.write(
             lambda: self._message(self._count),
             lambda: Encoded(to_yarp4(self._message(NEWER).to_bytes())),

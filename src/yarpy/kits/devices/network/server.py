@@ -8,13 +8,13 @@ floats as it spells them, and sounds. (Those of 3.10 to 3.12 are told by `newer`
 from __future__ import annotations
 
 import threading
-import time
 from collections.abc import Callable
 from contextlib import ExitStack
 from functools import partial
 from reprlib import repr as shown
 from typing import Any
 
+from yarpy import clock
 from yarpy.data.bottle import Bottle
 from yarpy.data.sig.sound import Sound
 from yarpy.data.stamp import Stamp
@@ -186,7 +186,7 @@ class Server(Closeable):
         readers.write(older_form, newer_form, stamp)
 
     def _next_stamp(self) -> Stamp:
-        self._stamp = self._stamp.next(time.time())
+        self._stamp = self._stamp.next(clock.now())
         return self._stamp
 
 

@@ -6,8 +6,9 @@ C++; a calibration takes the values of that moment away.
 
 from __future__ import annotations
 
-import time
 from collections.abc import Sequence
+
+from yarpy import clock
 
 
 class SimulatedAnalogSensor:
@@ -40,4 +41,4 @@ class SimulatedAnalogSensor:
         self._shift[channel] = self._read()[channel] - (value or 0.0)
 
     def _read(self) -> list[float]:
-        return [time.time(), *[0.0] * (len(self._shift) - 1)]
+        return [clock.now(), *[0.0] * (len(self._shift) - 1)]

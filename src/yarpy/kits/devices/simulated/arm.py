@@ -8,10 +8,10 @@ follows the time that it is given, with no mass.
 from __future__ import annotations
 
 import threading
-import time
 from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any
 
+from yarpy import clock
 from yarpy.kits.devices.controllers.cartesian import HandPose, Solution
 from yarpy.kits.devices.refusal import Refused
 
@@ -102,7 +102,7 @@ class SimulatedArm:
 
     def progress(self) -> float:
         """Return which share of the time has passed, from 0 to 1."""
-        passed = time.monotonic() - self._began
+        passed = clock.current().monotonic() - self._began
         return min(passed / self._takes, 1.0) if self._takes > 0 else 1.0
 
     @staticmethod
@@ -139,14 +139,14 @@ class SimulatedArm:
     def _begin(self, goal: list[float], seconds: float) -> None:
         with self._lock:
             self._from, self._to = self.joints(), goal
-            self._began, self._takes = time.monotonic(), max(seconds, 0.0)
+            self._began, self._takes = clock.current().monotonic(), max(seconds, 0.0)
 
     # -- where it is --------------------------------------------------------------------------
 
     def pose(self, axis: int | None = None) -> HandPose:
         frames = _forward(self.joints())
         found = frames[-1] @ self._tip() if axis is None else frames[self._joint(axis)]
-        return HandPose(tuple(found[:3, 3]), _axis_angle(found[:3, :3]), time.time())
+        return HandPose(tuple(found[:3, 3]), _axis_angle(found[:3, :3]), clock.now())
 
     def state(self) -> tuple[float, ...]:
         """Seven numbers: where the hand is."""

@@ -8,11 +8,11 @@ length. Angles are degrees: azimuth to the right, elevation, vergence.
 from __future__ import annotations
 
 import threading
-import time
 from collections.abc import Sequence
 from math import atan2, cos, degrees, hypot, radians, sin, tan
 from typing import Any, ClassVar
 
+from yarpy import clock
 from yarpy.data.bottle import Bottle
 from yarpy.kits.devices.controllers.cartesian import HandPose
 from yarpy.kits.devices.refusal import Refused
@@ -48,14 +48,14 @@ class SimulatedHead:
 
     def progress(self) -> float:
         """Return which share of the time has passed, from 0 to 1."""
-        passed = time.monotonic() - self._began
+        passed = clock.current().monotonic() - self._began
         return min(passed / self._takes, 1.0) if self._takes > 0 else 1.0
 
     def motion_done(self) -> bool:
         return self.progress() >= 1.0
 
     def saccade_done(self) -> bool:
-        return time.monotonic() - self._began >= min(self.eyes_time, self._takes)
+        return clock.current().monotonic() - self._began >= min(self.eyes_time, self._takes)
 
     def angles(self) -> Point:
         with self._lock:
@@ -77,7 +77,7 @@ class SimulatedHead:
                 goal[2] = self.kept_vergence
             self._from = here
             self._to = (goal[0], min(max(goal[1], -89.0), 89.0), max(goal[2], 0.0))
-            self._began, self._takes = time.monotonic(), self.neck_time
+            self._began, self._takes = clock.current().monotonic(), self.neck_time
 
     def stop(self) -> None:
         with self._lock:
@@ -170,7 +170,7 @@ class SimulatedHead:
         size = float(np.linalg.norm(twist))
         angle = atan2(size, float(np.trace(m)) - 1)
         axis = twist / size if size > 1e-9 else np.array([1.0, 0.0, 0.0])
-        return HandPose(_point(at), (*map(float, axis), angle), time.time())
+        return HandPose(_point(at), (*map(float, axis), angle), clock.now())
 
     # -- joints -------------------------------------------------------------------------------
 

@@ -75,18 +75,19 @@ def command(
     **others: bool,
 ) -> int:
     """Simulate a robot: joints, cameras and sensors on YARP ports."""
+    from yarpy.clock import now
     from yarpy.kits.sim.robot import NAME, Robot, icub, icub_head
 
     log.show()
     if whole and model is not None:
         raise click.UsageError("--whole is the iCub's: a model of --mujoco says itself what it has")
     if model is None:
-        name, parts = NAME, (icub if whole else icub_head)(size)
+        name, parts = NAME, (icub if whole else icub_head)(size, now)
     else:
         from yarpy.kits.sim.mujoco.robot import mujoco_robot
 
         try:
-            name, parts = mujoco_robot(model, size, warn=warn)
+            name, parts = mujoco_robot(model, size, now, warn=warn)
         except ValueError as error:
             raise click.ClickException(str(error)) from error
     with signals.held():

@@ -10,11 +10,11 @@ here. One answer for every request: what cannot be done is a Status, with zeros 
 
 from __future__ import annotations
 
-import time
 from collections.abc import Callable, Iterable, Sequence
 from functools import partial
 from typing import Any, ClassVar, Final
 
+from yarpy import clock
 from yarpy.data.bottle import Bottle
 from yarpy.data.value import Vocab
 from yarpy.kits.devices.access import Access
@@ -131,7 +131,7 @@ class Functions(ControlBoardMsgs):
 
     def _timed(self, member: str, times: bool) -> tuple[list[float], list[float]]:
         values = self._board.values(member, FLOAT)
-        stamps = self._board.timestamps() if times else [time.time()] * len(values)
+        stamps = self._board.timestamps() if times else [clock.now()] * len(values)
         return values, stamps
 
     def _motors(self, members: Iterable[str]) -> list[Any]:
