@@ -327,3 +327,17 @@ class ConnectionReader:
 
     def requestDrop(self) -> None:
         """The sender ends the connection itself."""
+
+
+class Ended(ConnectionReader):
+    """What a reader gets when its port is interrupted or closed: no message, and not valid."""
+
+    def __init__(self) -> None:
+        super().__init__(yarpy.Message("D", b""))
+        self._error = True
+
+    def _fill(self, reader: Any) -> bool:
+        return False
+
+    def isActive(self) -> bool:
+        return False

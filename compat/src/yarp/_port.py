@@ -6,7 +6,7 @@ from typing import Any
 
 import yarpy
 from yarp._abstract_contactable import UnbufferedContactable
-from yarp._connection import Asking
+from yarp._connection import Asking, Ended
 from yarp._contact import Contact
 from yarp._log import say
 from yarp._portable import PortReader, PortWriter
@@ -23,6 +23,19 @@ class Port(UnbufferedContactable):
 
     def _make(self, name: str, tcp_port: int) -> Any:
         return yarpy.Port(name, tcp_port=tcp_port, names=self._names(), on_connection=self._event)
+
+    def close(self) -> None:
+        """Close it; the name is given back. Its reader gets a connection that is not valid."""
+        was_open, reader = self._port is not None, self._reader
+        super().close()
+        if was_open and reader is not None:
+            reader.read(Ended())
+
+    def interrupt(self) -> None:
+        """Stop reading and writing, until `resume`. Its reader is told as by `close`."""
+        super().interrupt()
+        if self._port is not None and self._reader is not None:
+            self._reader.read(Ended())
 
     def write(self, writer: Any, reader: Any = None, callback: Any = None) -> bool:
         """Send; with a reader as the second argument, ask and read the answer into it."""

@@ -67,3 +67,22 @@ print(yarp.Network.connect("/asker", "/asked"))
 print(asker.write(yarp.Bottle("x y")), asker.write(yarp.Bottle("z"), reply), reply.toString())
 asker.close()
 asked.close()
+
+
+class Last(yarp.PortReader):
+    def read(self, connection):
+        print("told", connection.isValid(), connection.getWriter(), yarp.Bottle().read(connection))
+        return False
+
+
+for kind in (yarp.Port, yarp.RpcServer):
+    told, last = kind(), Last()
+    told.setReader(last)
+    told.close()
+    print(kind.__name__, told.open("/told"))
+    told.interrupt()
+    print("interrupted")
+    told.resume()
+    told.close()
+    print("closed")
+    told.close()
