@@ -131,4 +131,4 @@ def test_the_page_of_the_demo(browser: Browser, tmp_path: Path) -> None:
         page = browser.open()
         page.goto(url, wait_until="commit")
         body = page.locator("body")
-        wait_until(lambda: body.inner_text().count("320 \u00d7 240") == 2, HANG, "both eyes see")
+        wait_until(lambda: body.inner_text().count("320 \u00d7 240") == 2, BEGIN, "both eyes see")
