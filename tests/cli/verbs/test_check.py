@@ -1,6 +1,7 @@
 """`yarpy check`."""
 
 import re
+import sys
 
 
 def test_with_a_name_server(cli, names):
@@ -71,7 +72,7 @@ def test_access_with_a_mistake(here, monkeypatch, tmp_path):
 
 def test_files(here, tmp_path):
     file = tmp_path / "a.toml"
-    file.write_text("nmae = 'x'\n[programs]\na = 'true'\n")
+    file.write_text(f"nmae = 'x'\n[programs.a]\ncommand = ['{sys.executable}']\n")
     said = here("check", "--offline", str(file))
     assert said.code == 0
     assert said.out.splitlines() == [

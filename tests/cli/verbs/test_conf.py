@@ -33,7 +33,7 @@ def test_write_read_and_clean(lone):
 
 def test_the_current_namespace(here, tmp_path, monkeypatch):
     monkeypatch.setenv("YARP_NAMESPACE", "/lab")
-    assert here("conf").out == f"{tmp_path}/config/_lab.conf\n"
+    assert here("conf").out == f"{tmp_path / 'config' / '_lab.conf'}\n"
     assert here("conf", "10.0.0.1", "10001").code == 0
     assert (tmp_path / "config/_lab.conf").read_text() == "10.0.0.1 10001 yarp\n"
 

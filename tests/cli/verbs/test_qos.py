@@ -3,6 +3,7 @@
 import time
 
 import pytest
+from support.system import NO_MARKS
 from support.wait import wait_until
 
 import yarpy
@@ -16,6 +17,7 @@ def ports(names):
         yield "/qos/out", "/qos/in"
 
 
+@pytest.mark.skipif(bool(NO_MARKS), reason=NO_MARKS)
 def test_set_and_get(here, ports):
     assert here("qos", "set", *ports, "--src", "HIGH", "--des", "DSCP:AF11") == (0, "", "")
     assert here("qos", "get", *ports).out == "(src (qos ((tos 144)))) (des (qos ((tos 40))))\n"

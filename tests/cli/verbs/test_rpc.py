@@ -205,6 +205,7 @@ def test_a_port_of_yarp_4_gets_its_spelling(here, names, monkeypatch):
 
 
 def test_what_a_service_of_ros2_cannot_take_is_said(monkeypatch):
+    pytest.importorskip("zenoh", reason='Zenoh: pip install "yarpy[zenoh]"')
     with ros2_router() as number:
         monkeypatch.setenv("YARPY_ZENOH", f"127.0.0.1:{number}")
         target = Target("ros2://nobody~std_srvs/srv/SetBool")

@@ -4,18 +4,17 @@ import json
 import os
 import socket
 import subprocess
+import sys
 
 import pytest
-from support.wait import wait_until
+from support.system import NO_UNIX_SOCKETS
+from support.wait import HANG, wait_until
 
 from yarpy.errors import LocalProtocolError
 from yarpy.kits.launch.console import control
 from yarpy.kits.launch.supervise import process
 from yarpy.limit import CONTROL_LINE
-
-pytestmark = pytest.mark.skipif(
-    not hasattr(socket, "AF_UNIX"), reason="this system has no Unix sockets in Python"
-)
+from yarpy.platform import local_socket
 
 
 @pytest.fixture
@@ -39,6 +38,7 @@ def test_questions_and_answers(served) -> None:
     assert control.running() == ["my_app"]
 
 
+@pytest.mark.skipif(bool(NO_UNIX_SOCKETS), reason=NO_UNIX_SOCKETS)
 def test_nobody_else_may(served) -> None:
     assert served.stat().st_mode & 0o777 == 0o700
     (path,) = served.glob("*.sock")
@@ -48,8 +48,7 @@ def test_nobody_else_may(served) -> None:
 @pytest.mark.parametrize("line", [b"\n", b"[]\n", b"{" * 100_000, b"x" * (2 * CONTROL_LINE), b""])
 def test_what_is_no_question(served, line: bytes) -> None:
     (path,) = served.glob("*.sock")
-    with socket.socket(socket.AF_UNIX) as link:
-        link.connect(str(path))
+    with local_socket.connect(path, HANG) as link:
         try:
             link.sendall(line)
             link.shutdown(socket.SHUT_WR)
@@ -74,6 +73,7 @@ def test_who_is_not_there(served) -> None:
         control.ask("other", do="status")
 
 
+@pytest.mark.skipif(not process.known(), reason="this system has no /proc to look at")
 def test_what_a_killed_one_left_is_found(runtime) -> None:
     record = control.Record("a")
     record.write("run-1", ["x", "y"])
@@ -114,3 +114,18 @@ def test_a_damaged_record_is_none(runtime, text: str) -> None:
     (runtime / "a.json").write_text(text)
     assert record.left() == {} and record.away() == {}
     record.close()
+
+
+def test_an_application_is_reached_from_other_programs(cli) -> None:
+    program = [sys.executable, "-c", "import time; print('up', flush=True); time.sleep(600)"]
+    path = cli.home / "reached.toml"
+    path.write_text(f"[programs.a]\ncommand = {json.dumps(program)}\n")
+    with cli.start("up", str(path), "--lines") as up:
+        up.wait_line(r"a \| up", timeout=2 * HANG)
+        told = json.loads(cli.run("status", "--json").stdout)
+        assert [one["state"] for one in told["programs"]] == ["running"]
+        assert "up" in cli.run("logs").stdout
+        assert cli.run("stop", "a").returncode == 0
+        up.wait_line(r"\* a stopped")
+        assert cli.run("down", "reached").stdout == "reached has stopped\n"
+        assert up.wait() == 0

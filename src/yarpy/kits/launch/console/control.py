@@ -11,7 +11,6 @@ import contextlib
 import json
 import re
 import socket
-import sys
 import threading
 from collections.abc import Callable, Mapping
 from pathlib import Path
@@ -20,6 +19,7 @@ from typing import Any, Final
 from yarpy.errors import LocalProtocolError
 from yarpy.kits.launch.supervise import process
 from yarpy.limit import CONTROL_LINE, CONTROL_REPLY
+from yarpy.platform import local_socket
 from yarpy.platform.file_lock import hold
 from yarpy.platform.user import user
 from yarpy.transports.unix import runtime_directory
@@ -32,21 +32,14 @@ Answer = Callable[[dict[str, Any]], dict[str, Any]]
 
 def folder() -> Path:
     """Return where the sockets are. Raises LocalProtocolError if others could write there."""
-    _socket().close()
     path = runtime_directory() / "up"
     path.mkdir(parents=True, exist_ok=True, mode=0o700)
     found = path.lstat()
-    if found.st_uid != user():
+    if user() not in (None, found.st_uid):
         raise LocalProtocolError(f"another user has made {path}: set XDG_RUNTIME_DIR")
     if found.st_mode & 0o077:
         path.chmod(0o700)
     return path
-
-
-def _socket() -> socket.socket:
-    if sys.platform == "win32":
-        raise LocalProtocolError("this system has no Unix sockets, which `yarpy up` is reached by")
-    return socket.socket(socket.AF_UNIX, socket.SOCK_STREAM)
 
 
 def place(name: str, suffix: str) -> Path:
@@ -73,9 +66,7 @@ def ask(name: str, /, **request: Any) -> dict[str, Any]:
     """Return the answer of a running application. Raises LocalProtocolError if none of that name
     runs, or it refuses."""
     try:
-        with _socket() as link:
-            link.settimeout(_TIMEOUT)
-            link.connect(str(place(name, "sock")))
+        with local_socket.connect(place(name, "sock"), _TIMEOUT) as link:
             link.sendall(json.dumps(request).encode() + b"\n")
             with link.makefile("rb") as file:
                 line = file.readline(CONTROL_REPLY)
@@ -150,28 +141,20 @@ class Control:
     """Answers requests until it is closed."""
 
     def __init__(self, name: str, answer: Answer) -> None:
-        self._path = place(name, "sock")
         self._answer = answer
-        self._path.unlink(missing_ok=True)
-        self._socket = _socket()
-        self._socket.bind(str(self._path))
-        self._path.chmod(0o600)
-        self._socket.listen(16)
+        self._listener = local_socket.Listener(place(name, "sock"))
         self._thread = threading.Thread(target=self._serve, name="yarpy control", daemon=True)
         self._thread.start()
 
     def close(self) -> None:
         """End, and take the socket away."""
-        self._path.unlink(missing_ok=True)
-        with contextlib.suppress(OSError):
-            self._socket.shutdown(socket.SHUT_RDWR)
-        self._socket.close()
+        self._listener.close()
         self._thread.join(_TIMEOUT)
 
     def _serve(self) -> None:
         while True:
             try:
-                link, _ = self._socket.accept()
+                link = self._listener.accept()
             except OSError:
                 return
             with link:

@@ -44,8 +44,8 @@ class Process:
 
 
 def known() -> bool:
-    """Return whether this system tells of all its processes."""
-    return (_PROC / "self" / "stat").exists()
+    """Return whether this system tells of all its processes. The /proc of wine is Linux's."""
+    return os.name == "posix" and (_PROC / "self" / "stat").exists()
 
 
 def look(pid: int) -> Process | None:
