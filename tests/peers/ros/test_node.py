@@ -160,7 +160,7 @@ def test_we_call_services_of_rospy(graph: RosGraph) -> None:
         assert node.call("/lamp", "std_srvs/SetBool", {"data": False}).message == "off"
         switch = yarpy.idl.load("std_srvs/SetBool")
         assert node.call("/lamp", switch, switch.Request(True)).success
-        with pytest.raises(TypeError, match="is asked with a std_srvs/SetBoolRequest"):
+        with pytest.raises(TypeError, match="is asked with std_srvs/SetBoolRequest"):
             node.call("/lamp", switch, switch.Response())
         with pytest.raises(RemoteProtocolError, match="md5sum"):
             node.call("/lamp", "std_srvs/Trigger")
