@@ -4,6 +4,7 @@ import threading
 
 import pytest
 
+import yarpy.clock
 from yarpy.kits.sim.axis import Axis
 from yarpy.kits.sim.body import MEMORY, STEP, Body
 from yarpy.kits.sim.icub import ICUB_HEAD
@@ -18,9 +19,25 @@ class Clock:
         return self.now
 
 
+class Hand(yarpy.clock.SystemClock):
+    time = 1000.0
+
+    def now(self) -> float:
+        return self.time
+
+
 def positions(body: Body[Joint]) -> list[float]:
     with body.present() as joints:
         return [joint.position for joint in joints]
+
+
+def test_its_clock_is_that_of_the_program(monkeypatch: pytest.MonkeyPatch):
+    monkeypatch.setattr(yarpy.clock, "_current", hand := Hand())
+    body = Body([Joint(axis) for axis in ICUB_HEAD])
+    assert body.time == 1000.0
+    hand.time = 1001.0
+    with body.present():
+        assert body.time == 1001.0
 
 
 def test_time_passes_when_somebody_looks():

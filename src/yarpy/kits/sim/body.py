@@ -10,11 +10,11 @@ the clock. The clock is an argument, so tests can set the time. Any thread may c
 from __future__ import annotations
 
 import threading
-import time
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 from typing import Final, Generic, TypeVar
 
+from yarpy.clock import now
 from yarpy.kits.sim.joint import Joint
 
 J = TypeVar("J", bound=Joint)
@@ -28,7 +28,7 @@ Clock = Callable[[], float]
 class Body(Generic[J]):
     """These joints, in the time of `clock`, in seconds."""
 
-    def __init__(self, joints: Sequence[J], clock: Clock = time.time) -> None:
+    def __init__(self, joints: Sequence[J], clock: Clock = now) -> None:
         self.joints = tuple(joints)
         self._clock = clock
         self.time = clock()  # the time that the joints have reached

@@ -9,12 +9,12 @@ ports talk to browsers, C++ programs or people is up to the ports.
 
 from __future__ import annotations
 
-import time
 from collections.abc import Mapping
 from contextlib import ExitStack
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Final, Protocol
 
+from yarpy.clock import now
 from yarpy.kits.devices.closeable import Closeable, prefix
 from yarpy.kits.devices.control_board.interface import Joints
 from yarpy.kits.devices.frame_grabber.interface import Camera
@@ -53,10 +53,11 @@ class Parts:
     base: Localized | None = None
 
 
-def icub_head(size: tuple[int, int] = SIZE, clock: Clock = time.time) -> Parts:
+def icub_head(size: tuple[int, int] = SIZE, clock: Clock = now) -> Parts:
     """A head like an iCub's in a room: six joints, two eyes, an inertial unit.
 
-    size: width and height of the pictures. clock: returns the time in seconds.
+    size: width and height of the pictures. clock: returns the time in seconds; by default that of
+    the program (`yarpy.clock`).
     """
     from yarpy.kits.sim.eye import Eye, Shutter
     from yarpy.kits.sim.inertial import Inertial
@@ -70,7 +71,7 @@ def icub_head(size: tuple[int, int] = SIZE, clock: Clock = time.time) -> Parts:
     )
 
 
-def icub(size: tuple[int, int] = SIZE, clock: Clock = time.time) -> Parts:
+def icub(size: tuple[int, int] = SIZE, clock: Clock = now) -> Parts:
     """A head as `icub_head` makes it, and the boards of torso, arms and legs. The head does not
     move with the torso: what it sees and feels is its own.
     """

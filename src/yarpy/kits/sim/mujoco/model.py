@@ -10,10 +10,10 @@ Rules: only `load` imports MuJoCo.
 from __future__ import annotations
 
 import math
-import time
 from pathlib import Path
 from typing import Any, Final, Literal
 
+from yarpy.clock import now
 from yarpy.errors import UnknownPlugin
 from yarpy.kits.sim.axis import Axis
 from yarpy.kits.sim.body import Body, Clock
@@ -113,7 +113,7 @@ class _Views:
 class Model(Body[ModelJoint]):
     """A running model; `joints` are those driven by an actuator."""
 
-    def __init__(self, model: Any, name: str, clock: Clock = time.time) -> None:
+    def __init__(self, model: Any, name: str, clock: Clock = now) -> None:
         self._engine = mujoco()
         self.model, self.data = model, self._engine.MjData(model)
         self.name = name
@@ -184,7 +184,7 @@ class Model(Body[ModelJoint]):
         return Axis(name, lowest, highest, speed, 10 * speed, 12 * speed, kind=kind)
 
 
-def load(path: str | Path, clock: Clock = time.time) -> Model:
+def load(path: str | Path, clock: Clock = now) -> Model:
     """The model in an XML (MJCF, URDF) or MJB file. Raises UnknownPlugin (no MuJoCo), ValueError
     (not a model), OSError."""
     engine, path = mujoco(), Path(path)

@@ -13,10 +13,10 @@ Rules: a folder of MuJoCo Menagerie's layout is its `scene.xml`; without one, it
 from __future__ import annotations
 
 import re
-import time
 from collections.abc import Callable
 from pathlib import Path
 
+from yarpy.clock import now
 from yarpy.errors import UnknownPlugin
 from yarpy.kits.sim.board import Board
 from yarpy.kits.sim.body import Clock
@@ -31,7 +31,7 @@ from yarpy.kits.sim.robot import SIZE, Parts
 def mujoco_robot(
     path: str | Path,
     size: tuple[int, int] = SIZE,
-    clock: Clock = time.time,
+    clock: Clock = now,
     warn: Callable[[str], object] = lambda line: None,
 ) -> tuple[str, Parts]:
     """A name for the robot and its parts.

@@ -75,19 +75,18 @@ def command(
     **others: bool,
 ) -> int:
     """Simulate a robot: joints, cameras and sensors on YARP ports."""
-    from yarpy.clock import now
     from yarpy.kits.sim.robot import NAME, Robot, icub, icub_head
 
     log.show()
     if whole and model is not None:
         raise click.UsageError("--whole is the iCub's: a model of --mujoco says itself what it has")
     if model is None:
-        name, parts = NAME, (icub if whole else icub_head)(size, now)
+        name, parts = NAME, (icub if whole else icub_head)(size)
     else:
         from yarpy.kits.sim.mujoco.robot import mujoco_robot
 
         try:
-            name, parts = mujoco_robot(model, size, now, warn=warn)
+            name, parts = mujoco_robot(model, size, warn=warn)
         except ValueError as error:
             raise click.ClickException(str(error)) from error
     with signals.held():
