@@ -192,7 +192,5 @@ def _renumbered(text: str, first: int, other: int) -> str:
 
 def _clean() -> dict[str, str]:
     return {
-        name: value
-        for name, value in os.environ.items()
-        if not name.startswith(("YARP", "XDG_", "PYTHON"))
+        name: value for name, value in os.environ.items() if not name.startswith(("YARP", "XDG_"))
     }
