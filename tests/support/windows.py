@@ -50,6 +50,8 @@ QUICK = (  # those that take long first
     "tests/data",
     "tests/wire",
     "tests/names",
+    "tests/network",
+    "tests/config",
 )
 PATHS = (
     *("tests/nameserver", "tests/monitors", "tests/testing"),
