@@ -6,7 +6,6 @@ Rules: for one thread, but for `sync`.
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from contextlib import suppress
 from pathlib import Path
 from typing import Any, Final, Literal, Protocol, TypeAlias
 
@@ -61,11 +60,17 @@ class Sink(Protocol):
 
 
 class Tee:
-    """An MCAP file, and the folders of C++ beside it."""
+    """An MCAP file, and the folders of C++ beside it.
+
+    Where one of them fails, the other one still takes what the first had not written yet; then the
+    error comes. So what is in either of them is not lost.
+    """
 
     def __init__(self, file: McapWriter, folder: DumperWriter) -> None:
         self._file = file
         self._folder = folder
+        self._left: list[McapWriter | DumperWriter] = [file, folder]
+        self._failed: OSError | None = None
         self.path = file.path
 
     @property
@@ -76,38 +81,52 @@ class Tee:
     @property
     def pending(self) -> int:
         """Return how much waits to be written; 0 for nothing."""
-        return self._file.pending + self._folder.pending
+        return sum(sink.pending for sink in self._left)
 
     def add(self, port: str, envelope: str, received: int, payload: bytes | memoryview) -> None:
-        """Take a message; what C++ cannot keep is in the file alone."""
-        self._file.add(port, envelope, received, payload)
-        with suppress(LocalProtocolError):
-            self._folder.add(port, envelope, received, payload)
+        """Take a message; what C++ cannot keep is in the file alone. Raises OSError."""
+        if self._failed is not None and not self.pending:
+            raise self._failed
+        self._each(lambda sink: sink.add(port, envelope, received, payload))
 
     def note(self, what: Mapping[str, Any], received: int) -> None:
         """Take a note about the recording."""
-        self._file.note(what, received)
-        self._folder.note(what, received)
+        self._each(lambda sink: sink.note(what, received))
 
     def add_metadata(self, name: str, values: Mapping[str, str]) -> None:
         """Take what is known at the end."""
         self._file.add_metadata(name, values)
 
     def flush(self) -> None:
-        """Hand everything to the system."""
-        self._file.flush()
-        self._folder.flush()
+        """Hand everything to the system. Raises OSError."""
+        self._each(lambda sink: sink.flush())
+
+    def _each(self, act: Callable[[McapWriter | DumperWriter], None]) -> None:
+        """Do something with those that have not failed. Raises OSError if none is left."""
+        for sink in [*self._left]:
+            try:
+                act(sink)
+            except LocalProtocolError:
+                if sink is self._left[0]:
+                    raise
+            except OSError as error:
+                self._failed = error
+                self._left.remove(sink)
+        if self._failed is not None and not self._left:
+            raise self._failed
 
     def sync(self) -> None:
         """Wait for the disk."""
         self._file.sync()
 
     def close(self) -> None:
-        """Finish both."""
+        """Finish both. Raises OSError, also if one has failed before."""
         try:
             self._folder.close()
         finally:
             self._file.close()
+        if self._failed is not None:
+            raise self._failed
 
 
 class NullSink:

@@ -24,6 +24,7 @@ from yarpy.errors import LocalProtocolError, UnknownPlugin
 from yarpy.kits.record.capture import recorder as module
 from yarpy.kits.record.capture.disk_space import DiskSpace
 from yarpy.kits.record.capture.recorder import Recorder
+from yarpy.kits.record.dumper.part import Part
 
 
 class Disk(NamedTuple):
@@ -149,6 +150,33 @@ def test_a_disk_that_fails(tmp_path, names, out, monkeypatch) -> None:
         assert out.write([3], timeout=HANG) == 1
     with record.open(*recorder.files) as found:
         assert [one.value for one in found] == [[1]]
+
+
+@pytest.mark.parametrize("failing", ["file", "folder"])
+def test_what_one_of_both_has_is_not_lost(tmp_path, names, out, monkeypatch, failing) -> None:
+    with Recorder("/out", path=tmp_path / "x", format="both", names=names) as recorder:
+        assert out.wait_for_outputs(timeout=HANG)
+        out.write([1])
+        wait_until(lambda: recorder.messages == 1 and recorder.held == 0)
+
+        def full(*words: object) -> int:
+            raise OSError(errno.ENOSPC, "No space left on device")
+
+        with monkeypatch.context() as patch:
+            if failing == "file":
+                patch.setattr(os, "writev", full)
+            else:
+                patch.setattr(Part, "add", full)
+            out.write([2])
+            wait_until(lambda: recorder.messages == 2 and recorder.held == 0)
+            assert recorder.lost == 0
+            out.write([3])
+            assert recorder.ended.wait(HANG)
+        assert "No space left on device" in recorder.failure
+        assert recorder.lost == 1
+    with record.open(recorder.files[0]) as file, record.open(tmp_path / "x") as folder:
+        found = [len([*one]) for one in (file, folder)]
+    assert found == ([1, 2] if failing == "file" else [2, 1])
 
 
 def test_a_full_disk_ends_it_cleanly(tmp_path, names, out) -> None:

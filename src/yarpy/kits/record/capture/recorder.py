@@ -245,7 +245,7 @@ class Recorder:
         if ring is None:
             raise LocalProtocolError("everything is recorded: snapshots take --snapshot SECONDS")
         self._notes.add("snapshot", why=why)
-        self._wishes.append(lambda: ring.save(self._output, self._queue, self._now()))
+        self._wishes.append(lambda: ring.save(self._output, self._queue))
         self._queue.wake()
 
     # -- what comes --------------------------------------------------------------------------------

@@ -1,15 +1,16 @@
 """RingBuffer: the last seconds of a recording, which are written when somebody asks for them.
 
-Rules: for the thread of a recorder alone. What is older than `seconds` goes, and what is more than
-`memory` bytes: that is no loss. A trigger looks at the messages of a port, and fires when one
-matches and the one before it did not.
+Rules: for the thread of a recorder alone. What is older than `seconds` goes, by a clock that nobody
+sets, and what is more than `memory` bytes: that is no loss. A trigger looks at the messages of a
+port, and fires when one matches and the one before it did not.
 """
 
 from __future__ import annotations
 
 import re
+import time
 from collections import deque
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from contextlib import suppress
 from typing import Any, Final
 
@@ -27,14 +28,20 @@ _NOTES: Final = 1000
 
 class RingBuffer:
     """Keeps messages and notes. triggers: regular expressions by ports, searched for in the text
-    of their messages. Raises LocalProtocolError for what is none."""
+    of their messages. clock: nanoseconds since some moment. Raises LocalProtocolError for what is
+    no expression."""
 
-    def __init__(self, seconds: float, memory: int, triggers: Mapping[str, str]) -> None:
+    def __init__(
+        self,
+        seconds: float,
+        memory: int,
+        triggers: Mapping[str, str],
+        clock: Callable[[], int] = time.monotonic_ns,
+    ) -> None:
         self._keep = round(seconds * SECOND)
         self._memory = memory
+        self._clock = clock
         self._messages: deque[tuple[int, QueuedMessage]] = deque()  # with when they came
-        self._last = 0  # when the newest one came; nanoseconds of a clock that is never set back
-        self._shift = 0  # from the clock of the recorder to that one
         self._notes: deque[tuple[Mapping[str, Any], int, int]] = deque(maxlen=_NOTES)
         self._triggers: dict[str, re.Pattern[str]] = {}
         for port, text in triggers.items():
@@ -47,11 +54,10 @@ class RingBuffer:
 
     def add(self, queued: QueuedMessage) -> bool:
         """Keep a message; return whether it is one that was waited for."""
-        self._shift = max(self._shift, self._last - queued.received_ns)
-        self._last = queued.received_ns + self._shift
-        self._messages.append((self._last, queued))
+        now = self._clock()
+        self._messages.append((now, queued))
         self.held += queued.size
-        self._forget(self._last)
+        self._forget(now)
         return queued.port in self._triggers and self._fires(queued)
 
     def _forget(self, now: int) -> None:
@@ -75,13 +81,11 @@ class RingBuffer:
 
     def note(self, what: Mapping[str, Any], received: int) -> None:
         """Keep a note."""
-        self._notes.append((what, received, received + self._shift))
+        self._notes.append((what, received, self._clock()))
 
-    def drain(
-        self, now: int
-    ) -> tuple[Sequence[QueuedMessage], Sequence[tuple[Mapping[str, Any], int]]]:
+    def drain(self) -> tuple[Sequence[QueuedMessage], Sequence[tuple[Mapping[str, Any], int]]]:
         """Return the messages and notes of the last seconds, which go."""
-        now = max(self._last, now + self._shift)
+        now = self._clock()
         self._forget(now)
         messages = [queued for _, queued in self._messages]
         notes = [(what, at) for what, at, came in self._notes if came >= now - self._keep]
@@ -90,10 +94,10 @@ class RingBuffer:
         self.held = 0
         return messages, notes
 
-    def save(self, output: Output, queue: MessageQueue, now: int) -> None:
+    def save(self, output: Output, queue: MessageQueue) -> None:
         """Write what `drain` gives into a file of its own; what cannot be written counts as lost.
         Raises OSError."""
-        messages, notes = self.drain(now)
+        messages, notes = self.drain()
         output.begin()
         for note in notes:
             output.note(*note)
