@@ -1,6 +1,7 @@
 """A data set of LeRobot 3.0, read back by pyarrow."""
 
 import json
+import shutil
 import sys
 from pathlib import Path
 
@@ -10,7 +11,7 @@ from support.recordings import START, episode, payload_of
 
 import yarpy
 from yarpy.errors import LocalProtocolError, UnknownPlugin
-from yarpy.kits.record.lerobot.dataset import Plan, export
+from yarpy.kits.record.lerobot.dataset import Plan, _Making, export
 from yarpy.kits.record.mcap.writer import McapWriter
 
 PLAN = Plan(["/arm", "/goal"], ["/goal"], fps=10, task="Reach", robot="icub")
@@ -77,6 +78,24 @@ def test_a_failed_run_leaves_nothing(tmp_path: Path) -> None:
     with pytest.raises(LocalProtocolError, match=r"has 3 numbers, and 2 later"):
         export(paths, tmp_path / "set", PLAN)
     assert not (tmp_path / "set").exists()
+
+
+def test_what_a_killed_run_has_left_is_in_nobodys_way(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    pytest.importorskip("pyarrow", reason="data sets need pyarrow: pip install 'yarpy[table]'")
+    paths = [episode(tmp_path / "one.mcap", 2)]
+
+    def killed(*words: object, **more: object) -> None:
+        raise KeyboardInterrupt
+
+    with monkeypatch.context() as patch, pytest.raises(KeyboardInterrupt):
+        patch.setattr(shutil, "rmtree", lambda *words, **more: None)
+        patch.setattr(_Making, "describe", killed)
+        export(paths, tmp_path / "set", PLAN)
+    assert not (tmp_path / "set").exists(), "what is half is called otherwise"
+    assert export(paths, tmp_path / "set", PLAN) == 2
+    assert sorted(path.name for path in tmp_path.iterdir()) == ["one.mcap", "set"]
 
 
 @pytest.mark.peer("ffmpeg")

@@ -2,12 +2,15 @@
 
 Rules: a data set that is there is not touched. Ports of numbers make one vector, in their order.
 The numbers of one episode are in memory at a time, of its pictures a few; each has its own videos.
-What a failed run has written goes again.
+It is made under another name, and gets its own when it is whole: what a run that failed has written
+goes at once, of one that was killed when it is tried again.
 """
 
 from __future__ import annotations
 
+import errno
 import json
+import os
 import shutil
 from collections.abc import Mapping, Sequence
 from contextlib import ExitStack
@@ -74,15 +77,20 @@ def export(paths: Sequence[str | Path], folder: Path, plan: Plan) -> int:
         import pyarrow.parquet
     except ImportError:
         raise UnknownPlugin(NEEDS) from None
-    folder.mkdir(parents=True)
+    if folder.exists():
+        raise FileExistsError(errno.EEXIST, os.strerror(errno.EEXIST), str(folder))
+    unfinished = folder.with_name(f".{folder.name}.unfinished")
+    shutil.rmtree(unfinished, ignore_errors=True)
+    unfinished.mkdir(parents=True)
     try:
         with ExitStack() as stack:
-            made = _Making(folder, plan, pyarrow, stack)
+            made = _Making(unfinished, plan, pyarrow, stack)
             for path in paths:
                 made.episode(path)
         made.describe()
+        unfinished.rename(folder)
     except BaseException:
-        shutil.rmtree(folder, ignore_errors=True)
+        shutil.rmtree(unfinished, ignore_errors=True)
         raise
     return made.frames
 
