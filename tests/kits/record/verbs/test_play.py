@@ -59,6 +59,17 @@ def test_what_is_damaged_is_told_and_the_rest_played(here, tmp_path) -> None:
     assert "x.mcap: byte " in said.err
 
 
+def test_what_has_no_message_left_is_an_error(here, tmp_path) -> None:
+    path = recorded(tmp_path / "x.mcap")
+    with record.open(path) as found:
+        payload = bytes(next(iter(found)).payload)
+    data = path.read_bytes()
+    path.write_bytes(data.replace(payload[:4], bytes(4)))
+    said = here("play", str(path), "--prefix", "/damaged")
+    assert said.code == 1 and said.out.startswith("the end: 0 messages"), said
+    assert "x.mcap: byte " in said.err
+
+
 def test_names_of_ports() -> None:
     assert parse_rename("/a=/b") == ("/a", "/b")
     for text in ("/a", "a=/b", "/a=b", "="):

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import json
 import signal
+import sys
+import types
 import urllib.error
 import urllib.request
 
@@ -16,7 +18,9 @@ from support.recordings import recorded
 from support.wait import HANG, wait_until
 
 import yarpy
-from yarpy.kits.views.verbs.view import names_of
+from yarpy.errors import LinkClosed
+from yarpy.kits.views.verbs import view
+from yarpy.kits.views.verbs.view import in_rerun, names_of
 
 
 def status(url):
@@ -221,3 +225,29 @@ def test_foxglove_may_read_when_it_is_told_so(cli, names, tmp_path):
 def test_what_cannot_be_looked_back_at(words, said, cli):
     done = cli.run("view", "--no-browser", *words)
     assert done.returncode == 1 and said in done.stderr
+
+
+class Rerun(types.ModuleType):
+    """Stands in for the library of Rerun, whose window may be gone."""
+
+    gone = False
+
+    def __getattr__(self, name):
+        return lambda *words, **more: self
+
+    def flush(self):
+        if self.gone:
+            raise RuntimeError("gRPC connection severed")
+
+
+def test_rerun_without_a_window_says_so(tmp_path, monkeypatch) -> None:
+    library = Rerun("rerun")
+    monkeypatch.setitem(sys.modules, "rerun", library)
+    walk = (str(recorded(tmp_path / "walk.mcap")),)
+    assert in_rerun(walk, "", False) == 0
+    library.gone = True
+    with pytest.raises(LinkClosed, match="has not got all of it: gRPC connection severed"):
+        in_rerun(walk, "", False)
+    monkeypatch.setattr(view, "has_display", lambda platform, environment: False)
+    with pytest.raises(LinkClosed, match=r"no display .*--no-browser"):
+        in_rerun(walk, "", True)

@@ -10,7 +10,8 @@ played on one time axis, bags of ROS among them. The port /play/rpc:i takes the 
 step, seek SECONDS, loop BEGIN END, rate N, status, stop, and some of those of C++ yarpdataplayer
 (`yarpy rpc`).
 
-Exit codes: 0 the end was reached, or somebody stopped it; 1 it cannot be played.
+Exit codes: 0 the end was reached, or somebody stopped it; 1 it cannot be played: damage has left no
+message.
 """
 
 from __future__ import annotations
@@ -112,7 +113,8 @@ def command(
         print_line("stopped before the start" if player is None else summary(player, ended))
         for damage in recording.damages:
             warn(damage)
-    return 0
+        nothing = ended and player is not None and not player.played
+        return 1 if nothing and recording.damages else 0
 
 
 def open_rpc(name: str, commands: Commands) -> RpcServer:

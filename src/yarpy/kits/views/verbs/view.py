@@ -14,6 +14,7 @@ Exit codes: 1 a port cannot be opened, or a source cannot be one; otherwise it r
 from __future__ import annotations
 
 import os
+import sys
 import time
 from contextlib import ExitStack, suppress
 from pathlib import Path
@@ -22,12 +23,12 @@ from typing import TYPE_CHECKING
 import click
 
 import yarpy
-from yarpy.cli.browser import open_page, show_page
+from yarpy.cli.browser import has_display, open_page, show_page
 from yarpy.cli.output import print_line
 from yarpy.cli.ports import open_port
 from yarpy.cli.source import Source, also_said
 from yarpy.cli.stderr import warn
-from yarpy.errors import LocalProtocolError
+from yarpy.errors import LinkClosed, LocalProtocolError
 from yarpy.platform import waiting
 from yarpy.wire.message import Message
 
@@ -193,7 +194,7 @@ def _beside(first: FileSource, path: str, offset: float) -> BesideSource:
 
 def in_rerun(words: tuple[str, ...], carrier: str, window: bool) -> int:
     """Hand recordings to Rerun, or what ports send until a signal; return the exit code. Without a
-    window it is handed to one that listens already."""
+    window it is handed to one that listens already. Raises UnknownPlugin, LinkClosed."""
     from yarpy.kits.record.capture.opening import open_port
     from yarpy.kits.record.capture.subscriptions import PortSelection, Subscriptions
     from yarpy.kits.record.recorded import Recorded
@@ -201,6 +202,11 @@ def in_rerun(words: tuple[str, ...], carrier: str, window: bool) -> int:
     from yarpy.kits.record.view.elsewhere import rerun_library, show
 
     rr = rerun_library()
+    if window and not has_display(sys.platform, os.environ):
+        raise LinkClosed(
+            "there is no display for Rerun's window: `rerun --serve-web` shows it in a browser, "
+            "and --no-browser hands it to that one"
+        )
     rr.init("yarpy", spawn=window)
     if not window:
         rr.connect_grpc()
@@ -210,7 +216,12 @@ def in_rerun(words: tuple[str, ...], carrier: str, window: bool) -> int:
                 show(rr, recorded)
             for damage in recording.damages:
                 warn(damage)
-        rr.disconnect()  # what is on its way arrives before this program ends
+        try:
+            rr.get_global_data_recording().flush()  # what is on its way arrives before we end
+        except RuntimeError as error:
+            raise LinkClosed(f"Rerun has not got all of it: {error}") from None
+        finally:
+            rr.disconnect()
         return 0
 
     def take(message: Message) -> None:
