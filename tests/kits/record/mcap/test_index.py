@@ -15,7 +15,7 @@ from yarpy.kits.record.mcap.writer import McapWriter
 
 
 def index_of(path: Path) -> Index:
-    handle = os.open(path, os.O_RDONLY)
+    handle = os.open(path, os.O_RDONLY | getattr(os, "O_BINARY", 0))
     try:
         return read_index(Window(handle))
     finally:
