@@ -19,6 +19,7 @@ from yarpy.kits.launch.console import control
 _POLL: Final = 0.02  # seconds
 _TIMEOUT: Final = 120.0  # seconds until it can be reached
 _SAID: Final = 2000  # letters of what it said that are told
+_ALONE: Final = getattr(subprocess, "DETACHED_PROCESS", 0)  # on Windows: without our console
 
 
 def detach(name: str, words: Sequence[str], timeout: float = _TIMEOUT) -> Path:
@@ -37,6 +38,7 @@ def detach(name: str, words: Sequence[str], timeout: float = _TIMEOUT) -> Path:
             stdout=file,
             stderr=subprocess.STDOUT,
             start_new_session=True,
+            creationflags=_ALONE,
         )
     until = time.monotonic() + timeout
     while child.poll() is None:
