@@ -10,6 +10,7 @@ import atexit
 import sys
 import threading
 import weakref
+from collections.abc import Callable
 from typing import Any
 
 import yarpy
@@ -221,12 +222,17 @@ class Contactable:
             reader, self._last = self._reader, message
             if reader is None:
                 return
-            try:
-                self._hand(reader, message)
-            except Exception:
-                import traceback
+            self._try(self._hand, reader, message)
 
-                traceback.print_exc()
+    @staticmethod
+    def _try(act: Callable[..., object], *arguments: Any) -> None:
+        """Call what is of the program; what it raises is shown, and the port goes on."""
+        try:
+            act(*arguments)
+        except Exception:
+            import traceback
+
+            traceback.print_exc()
 
     def _hand(self, reader: Any, message: yarpy.Message) -> None:
         connection = ConnectionReader(message, receiver=self._name)

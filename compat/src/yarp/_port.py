@@ -29,13 +29,13 @@ class Port(UnbufferedContactable):
         was_open, reader = self._port is not None, self._reader
         super().close()
         if was_open and reader is not None:
-            reader.read(Ended())
+            self._try(reader.read, Ended())
 
     def interrupt(self) -> None:
         """Stop reading and writing, until `resume`. Its reader is told as by `close`."""
         super().interrupt()
         if self._port is not None and self._reader is not None:
-            self._reader.read(Ended())
+            self._try(self._reader.read, Ended())
 
     def write(self, writer: Any, reader: Any = None, callback: Any = None) -> bool:
         """Send; with a reader as the second argument, ask and read the answer into it."""
