@@ -90,11 +90,35 @@ def test_who_cannot_read_the_file_does_not_come_in(
             with socket.create_connection((LOOPBACK, int(number)), HANG) as stranger:
                 stranger.sendall(said)
                 assert stranger.recv(1) == b""
+        monkeypatch.setattr(local_socket, "_GREETING", HANG)
         with connect_loopback(tmp_path / "s", HANG) as ours, accepted.result(HANG) as theirs:
             ours.sendall(b"x")
             assert theirs.recv(1) == b"x"
     finally:
         listener.close()
+
+
+def test_who_says_the_word_slowly_is_hung_up(
+    tmp_path: Path, pool: ThreadPoolExecutor, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(local_socket, "_GREETING", 0.3)
+    listener = LoopbackListener(tmp_path / "s")
+    accepted = pool.submit(listener.accept)
+    number, _, word = (tmp_path / "s").read_text().partition(" ")
+    try:
+        with socket.create_connection((LOOPBACK, int(number)), HANG) as stranger:
+            stranger.settimeout(0.1)  # between two letters, each of which comes in time
+            with pytest.raises(ConnectionError):
+                for letter in word:
+                    stranger.sendall(letter.encode())
+                    try:
+                        assert stranger.recv(1) == b""
+                        raise ConnectionError("hung up")
+                    except TimeoutError:
+                        pass
+    finally:
+        listener.close()
+    assert isinstance(accepted.exception(HANG), OSError)
 
 
 @pytest.mark.parametrize("text", ["", "x word", "99999999 word"])

@@ -330,7 +330,7 @@ class ConnectionReader:
 
 
 class Ended(ConnectionReader):
-    """What a reader gets when its port is interrupted or closed: no message, and not valid."""
+    """The connection of a port that is interrupted or closed: no message, and not valid."""
 
     def __init__(self) -> None:
         super().__init__(yarpy.Message("D", b""))

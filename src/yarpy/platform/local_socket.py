@@ -14,6 +14,7 @@ import hmac
 import secrets
 import socket
 import sys
+import time
 from contextlib import suppress
 from pathlib import Path
 from typing import Final
@@ -42,7 +43,6 @@ class LoopbackListener:
             if self._closed:
                 link.close()
                 raise ConnectionAbortedError(f"{self._path} is closed")
-            link.settimeout(_GREETING)
             with suppress(OSError):  # a stranger, or one that has gone
                 if hmac.compare_digest(_read(link, _WORD), self._word.encode()):
                     return link
@@ -74,9 +74,16 @@ def connect_loopback(path: Path, timeout: float) -> socket.socket:
 
 
 def _read(link: socket.socket, size: int) -> bytes:
-    found = b""
-    while len(found) < size and (more := link.recv(size - len(found))):
+    """Return so many bytes, or fewer if there are no more. Raises OSError if they take too long,
+    however they come: others wait meanwhile."""
+    found, until = b"", time.monotonic() + _GREETING
+    while len(found) < size:
+        link.settimeout(max(until - time.monotonic(), 0.001))
+        more = link.recv(size - len(found))
+        if not more:
+            break
         found += more
+    link.settimeout(_GREETING)
     return found
 
 

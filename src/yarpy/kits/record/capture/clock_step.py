@@ -1,4 +1,4 @@
-"""Whether the system's clock was set while a recorder runs.
+"""Notice that the system's clock was set while a recorder runs.
 
 Rules: it is compared with the clock that nobody sets. Half a second and less is no step: services
 of time move a clock by so little.
