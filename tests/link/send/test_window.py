@@ -19,10 +19,7 @@ ACK = framing.ACK
 WINDOW = Limits().ahead
 
 
-def test_acknowledgements_are_read_late_but_within_a_window(
-    monkeypatch: pytest.MonkeyPatch,
-) -> None:
-    monkeypatch.setattr(window, "WINDOW_SECONDS", 60.0)  # a busy machine needs more for ten
+def test_acknowledgements_are_read_late_but_within_a_window() -> None:
     with connected() as (link, far):
         done = threading.Event()
 
@@ -42,11 +39,11 @@ def test_acknowledgements_are_read_late_but_within_a_window(
         assert link.sender.window.open == 0
 
 
-def test_slow_reader_holds_its_sender_up() -> None:
+def test_slow_reader_holds_its_sender_up(monkeypatch: pytest.MonkeyPatch) -> None:
     """After some milliseconds without an acknowledgement a send waits, as it does in C++."""
+    monkeypatch.setattr(window, "WINDOW_SECONDS", 0.0)
     with connected() as (link, far):
         link.send(Packet([1]))
-        time.sleep(2 * window.WINDOW_SECONDS)
         acknowledged = threading.Event()
 
         def acknowledge() -> None:
@@ -59,11 +56,8 @@ def test_slow_reader_holds_its_sender_up() -> None:
         assert link.sender.window.open == 1
 
 
-def test_waiting_for_acknowledgements_has_its_limit_and_loses_none(
-    monkeypatch: pytest.MonkeyPatch,
-) -> None:
+def test_waiting_for_acknowledgements_has_its_limit_and_loses_none() -> None:
     """Also for one that has come in part."""
-    monkeypatch.setattr(window, "WINDOW_SECONDS", 60.0)  # a busy machine needs more for two
     with connected() as (link, far):
         for number in range(2):
             link.send(Packet([number]))
