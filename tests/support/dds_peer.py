@@ -7,7 +7,8 @@ python dds_peer.py obey                does what the lines of its input say, eac
 
     ["writer", ID, TOPIC, RELIABILITY, DURABILITY, DEPTH]    RELIABILITY: reliable, best_effort
     ["reader", ID, TOPIC, RELIABILITY, DURABILITY, DEPTH]    DURABILITY: volatile, transient_local
-                                  and perhaps {"deadline", "lifespan", "lease": milliseconds}
+                                  and perhaps {"deadline", "lifespan", "lease": milliseconds},
+                                  and {"type": "Int32"} instead of String
     ["events", ID]                 what the library counts of its events, by name
     ["write", ID, TEXT ...]        and waits until reliable readers have confirmed it
     ["close", ID]
@@ -27,6 +28,7 @@ from cyclonedds import builtin
 from cyclonedds.core import DDSException, InstanceState, Policy, Qos
 from cyclonedds.domain import DomainParticipant
 from cyclonedds.idl import IdlStruct
+from cyclonedds.idl.types import int32
 from cyclonedds.pub import DataWriter
 from cyclonedds.sub import DataReader
 from cyclonedds.topic import Topic
@@ -38,6 +40,11 @@ RELIABLE = Policy.Reliability.Reliable(duration(milliseconds=100))
 @dataclass
 class String_(IdlStruct, typename="std_msgs.msg.dds_.String_"):  # noqa: N801
     data: str
+
+
+@dataclass
+class Int32_(IdlStruct, typename="std_msgs.msg.dds_.Int32_"):  # noqa: N801
+    data: int32
 
 
 def say(*words: object) -> None:
@@ -90,7 +97,7 @@ def obey() -> None:
     part = DomainParticipant(int(os.environ.get("ROS_DOMAIN_ID", "0")))
     seen = builtin.BuiltinDataReader(part, builtin.BuiltinTopicDcpsSubscription)
     held: dict[str, Any] = {}
-    topics: dict[str, Any] = {}
+    topics: dict[tuple[str, Any], Any] = {}
     lock = threading.Lock()
 
     def hear() -> None:
@@ -111,12 +118,14 @@ def obey() -> None:
         answer: list[object] = []
         with lock:
             if verb in ("writer", "reader"):
-                topic, *policies = rest
-                if topic not in topics:
-                    topics[topic] = Topic(part, f"rt{topic}", String_)
-                qos = qos_of(*policies)
+                topic, reliability, durability, depth, *more = rest
+                said = more[0] if more else {}
+                key = (topic, Int32_ if said.pop("type", "") == "Int32" else String_)
+                if key not in topics:
+                    topics[key] = Topic(part, f"rt{topic}", key[1])
+                qos = qos_of(reliability, durability, depth, said)
                 made = DataWriter if verb == "writer" else DataReader
-                held[name] = made(part, topics[topic], qos=qos)
+                held[name] = made(part, topics[key], qos=qos)
             elif verb == "write":
                 for text in rest:
                     held[name].write(String_(text))

@@ -26,6 +26,9 @@ class Node(NamedTuple):
         return f"{self.namespace.rstrip('/')}/{self.name}"
 
 
+NOBODY: Final = Node("/", "_")  # of an endpoint over DDS whose node nobody has told
+
+
 def check_topic(name: str) -> str:
     """The name of a topic or service with its leading slash. Raises AddressError."""
     whole = "/" + name.strip("/")

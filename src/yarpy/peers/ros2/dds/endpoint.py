@@ -26,6 +26,7 @@ from yarpy.peers.ros2.dds.qos import dds_qos
 from yarpy.peers.ros2.dds.status import events_of, mask_of
 from yarpy.peers.ros2.event import INCOMPATIBLE, MESSAGE, Events
 from yarpy.peers.ros2.message.library import hash_of
+from yarpy.peers.ros2.mismatch import Mismatch
 from yarpy.peers.ros2.name import Node
 from yarpy.peers.ros2.qos import Qos, asked, promised
 from yarpy.peers.ros2.token import PUBLISHER, SUBSCRIBER, Token
@@ -58,6 +59,7 @@ class DdsEndpoint(Inbox):
         self._entity: Any = None
         self._shown: list[Any] = []  # readers or writers that are told of
         self._owned: tuple[Any, ...] = ()
+        self._look: Any = None  # at others of another type
         self.events = Events()
         self._news = 0  # the statuses that tell who has come or gone
         self._refusal = 0  # ... and that somebody cannot be heard
@@ -68,7 +70,7 @@ class DdsEndpoint(Inbox):
     def begin(self, type_: str) -> None:
         """Find out about the type, and join. Raises UnknownName, UnknownType, DecodeError."""
         deadline = time.monotonic() + (0.0 if type_ else TIMEOUT)
-        while not (seen := self._seen()) and time.monotonic() < deadline:
+        while not (seen := self._part.seen(self.name, self._peers)) and time.monotonic() < deadline:
             time.sleep(0.05)
         with self._opening:
             if type_:
@@ -90,9 +92,6 @@ class DdsEndpoint(Inbox):
                 self._open(kinds.chosen(value))
             return self.kind
 
-    def _seen(self) -> list[Token]:
-        return self._part.seen(self.name, self._peers)
-
     def _open(self, kind: Any) -> None:
         from cyclonedds import topic
 
@@ -100,16 +99,19 @@ class DdsEndpoint(Inbox):
         self._topic = topic.Topic(self._part.dds, f"rt{self.name}", self._class)
         self._owned = (self._topic,)
         self.kind = kind
+        self._key = kinds.key_of(self._part.number, self.name, kind, False)
         self.qos = self._fitting()
         self._entity = self._show(self._made())
         self._owned = (self._entity, self._topic)
+        self._look = Mismatch(self.port_name, self._key, strict=False).look
+        self._part.watch.add(self.name, self._peers, self._look)
 
     def _fitting(self) -> Qos:
         """The QoS for those who are there, unless one is said."""
         if self._given:
             return self.qos
-        type_ = kinds.key_of(0, self.name, self.kind, False).type
-        theirs = [token.qos for token in self._seen() if token.key and token.key.type == type_]
+        found = self._part.seen(self.name, self._peers)
+        theirs = [item.qos for item in found if item.key and item.key.type == self._key.type]
         return asked(theirs) if self.role == SUBSCRIBER else promised(theirs)
 
     def _made(self) -> Any:
@@ -170,6 +172,7 @@ class DdsEndpoint(Inbox):
             if self._closed:  # an interrupted one is not
                 return
             self._closed = True
+        self._part.watch.remove(self._look)
         for item in self._shown:
             self._part.pump.remove(item)
         self._part.discovery.remove(self.node, *self._shown)

@@ -21,9 +21,10 @@ from yarpy.peers.ros2.dds.library import delete
 from yarpy.peers.ros2.dds.pump import Pump
 from yarpy.peers.ros2.dds.qos import promises_of
 from yarpy.peers.ros2.dds.raw import raw_class
+from yarpy.peers.ros2.dds.watch import Watch
 from yarpy.peers.ros2.key import Key
 from yarpy.peers.ros2.message.library import hash_of
-from yarpy.peers.ros2.name import Node
+from yarpy.peers.ros2.name import NOBODY, Node
 from yarpy.peers.ros2.token import PUBLISHER, SUBSCRIBER, Token
 from yarpy.transports.bind import listening_host, reach
 
@@ -93,6 +94,7 @@ class Participant:
 
         self.pump = Pump(self.dds)
         self.discovery = Discovery(self.dds, self.pump)
+        self.watch = Watch(self.dds, self.pump, self.token, self.seen)
         log.info("DDS is spoken in domain %d, open to %s", domain, who)
 
     def endpoints(self, kind: str) -> Iterator[Any]:
@@ -105,15 +107,15 @@ class Participant:
 
     def seen(self, name: str, kind: str) -> list[Token]:
         """Return the publishers of a topic, or its subscribers, as tokens."""
-        found = []
-        for sample in self.endpoints(kind):
-            if sample.topic_name == f"rt{name}":
-                hash_, qos = promises_of(sample.qos)
-                key = Key(self.number, name, sample.type_name, hash_)
-                who = str(sample.participant_key)
-                node = self.discovery.node_of(sample.key) or Node("/", "_")
-                found.append(Token(self.number, who, 0, 0, kind, node, key, qos))
-        return found
+        topic = f"rt{name}"
+        return [self.token(i, kind) for i in self.endpoints(kind) if i.topic_name == topic]
+
+    def token(self, sample: Any, kind: str) -> Token:
+        """Return a publisher or subscriber that the library tells of as a token."""
+        hash_, qos = promises_of(sample.qos)
+        key = Key(self.number, sample.topic_name.removeprefix("rt"), sample.type_name, hash_)
+        node = self.discovery.node_of(sample.key) or NOBODY
+        return Token(self.number, str(sample.participant_key), 0, 0, kind, node, key, qos)
 
     def nodes(self) -> list[Node]:
         """Return the nodes of all programs that are there, ours too."""
@@ -126,6 +128,7 @@ class Participant:
 
     def close(self) -> None:
         """End it; everything in it is deleted."""
+        self.watch.close()
         self.discovery.close()
         self.pump.close()
         delete(self.dds)

@@ -21,6 +21,7 @@ from yarpy.peers.ros2 import kind as kinds
 from yarpy.peers.ros2.carrier import GONE, Incoming, Outgoing
 from yarpy.peers.ros2.event import MESSAGE, Event, Events
 from yarpy.peers.ros2.key import NO_HASH, Key
+from yarpy.peers.ros2.mismatch import Mismatch
 from yarpy.peers.ros2.name import Node
 from yarpy.peers.ros2.qos import KEEP_ALL, PROFILES, Qos, promised
 from yarpy.peers.ros2.token import CLIENT, PUBLISHER, SERVER, SUBSCRIBER, Token, gid
@@ -36,7 +37,6 @@ log = logger("yarpy.ros2")
 
 MOST_QUESTIONS: Final = 100  # that wait for a server of ours
 MOST_PUBLISHERS: Final = 1000  # whose numbers are followed
-MOST_TOLD: Final = 100  # peers of other types that the log names
 BACKENDS: Final = "backends:cpu:"  # what Lyrical wants to know of readers of bytes
 BESIDE: Final = "/_buf_cpu"  # ... and where it may send them then
 
@@ -65,7 +65,7 @@ class Endpoint(Inbox):
         self._handles: list[Any] = []
         self._gid = b""
         self._closed = False
-        self._told: set[tuple[Node, Key]] = set()
+        self._mismatch: Mismatch | None = None
         self._opening = threading.RLock()  # the type is settled once
         self._look = Coalesced(self._take_type, f"yarpy type of {name}")
         self.events = Events()
@@ -127,6 +127,7 @@ class Endpoint(Inbox):
         self._gid = gid(self._declared.text)
         self.join(key, kind)
         self._declared.show()
+        self._mismatch = self._mismatch or Mismatch(self.port_name, key, strict=True)
         self.key, self.kind = key, kind
 
     def extra(self, kind: Any) -> str:
@@ -143,10 +144,10 @@ class Endpoint(Inbox):
             return
         if token.kind not in self.peers:
             return
-        if self.key is None:
+        if self.key is None or self._mismatch is None:
             self._look()
         elif key[2:] != self.key[2:]:
-            self._tell(token, key)
+            self._mismatch.look(token)
         else:
             self.joined(token)
 
@@ -160,21 +161,6 @@ class Endpoint(Inbox):
                     self._learn()
         except YarpError as error:
             log.warning("%s: %s", self.port_name, error)
-
-    def _tell(self, token: Token, key: Key) -> None:
-        """Somebody has another type."""
-        ours = self.key
-        if ours is None or (token.node, key) in self._told or len(self._told) >= MOST_TOLD:
-            return
-        self._told.add((token.node, key))
-        log.warning(
-            "%s and the node %s do not hear each other at %s: it is %s there and %s here",
-            self.port_name,
-            readable(str(token.node)),
-            self.name,
-            readable(kinds.shown(key)),
-            kinds.shown(ours),
-        )
 
     # -- the end ----------------------------------------------------------------------------------
 

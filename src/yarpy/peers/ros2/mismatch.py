@@ -1,0 +1,55 @@
+"""Who is at our topic with another type, told in the log.
+
+Rules: each node is told of once for each type, and not more than `MOST_TOLD` in all. Where somebody
+has the same type without saying which version, it counts as ours.
+"""
+
+from __future__ import annotations
+
+from typing import Final
+
+from yarpy.log import logger, readable
+from yarpy.peers.ros2 import kind as kinds
+from yarpy.peers.ros2.key import NO_HASH, Key
+from yarpy.peers.ros2.name import NOBODY, Node
+from yarpy.peers.ros2.token import Token
+
+log = logger("yarpy.ros2")
+
+MOST_TOLD: Final = 100  # peers of other types that the log names
+
+
+class Mismatch:
+    """Tells of those at a topic who have another type than `ours`. `strict`: no version at all is
+    another one, too, as it is over Zenoh."""
+
+    def __init__(self, port_name: str, ours: Key, strict: bool) -> None:
+        self._port_name, self._ours, self._strict = port_name, ours, strict
+        self._told: set[tuple[Node, Key]] = set()
+
+    def look(self, token: Token) -> None:
+        """Tell of a peer, if it has another type."""
+        theirs, ours = token.key, self._ours
+        if theirs is None or theirs[2:] == ours[2:]:
+            return
+        same = theirs.type == ours.type
+        if same and not self._strict and NO_HASH in (theirs.hash, ours.hash):
+            return
+        if (token.node, theirs) in self._told or len(self._told) >= MOST_TOLD:
+            return
+        self._told.add((token.node, theirs))
+        log.warning(
+            "%s and %s do not hear each other at %s: it is %s there and %s here; %s",
+            self._port_name,
+            "a program" if token.node == NOBODY else f"the node {readable(str(token.node))}",
+            ours.name,
+            readable(_shown(theirs)),
+            _shown(ours),
+            "give both the same version of that package"
+            if same
+            else "give both one type, or one of them another name",
+        )
+
+
+def _shown(key: Key) -> str:
+    return kinds.shown(key).removesuffix(f" ({NO_HASH})")
