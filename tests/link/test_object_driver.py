@@ -4,10 +4,12 @@ from __future__ import annotations
 
 import time
 from collections.abc import Sequence
+from types import SimpleNamespace
 
 import pytest
 
 from yarpy.errors import LinkClosed, Timeout
+from yarpy.link.driver import SHORT
 from yarpy.link.object_driver import ObjectDriver
 from yarpy.transports.base import ObjectTransport
 from yarpy.wire.stream import ObjectStream
@@ -102,10 +104,19 @@ def test_silence_and_a_failing_send() -> None:
         driver.send()
 
 
-def test_a_wait_ends_at_its_deadline_and_not_before() -> None:
+def test_a_wait_ends_at_its_deadline_and_not_before(monkeypatch: pytest.MonkeyPatch) -> None:
     """Long waits are made of two, since the system is late by a part of each."""
-    driver, table = driver_on()
-    until = time.monotonic() + 0.5
+    now = [100.0]
+    clock = SimpleNamespace(monotonic=lambda: now[0])
+    monkeypatch.setattr("yarpy.link.driver.time", clock)
+
+    class Asleep(Table):
+        def receive(self, wait: bool = True) -> tuple[object] | None:
+            if wait:
+                now[0] += self.waits[-1] or 0.0
+            raise BlockingIOError("nothing has come")
+
+    table = Asleep()
     with pytest.raises(Timeout):
-        driver.fill(until)
-    assert len(table.waits) > 1 and time.monotonic() >= until
+        ObjectDriver(table, ObjectStream()).fill(100.0 + 2 * SHORT)
+    assert table.waits[:2] == [1.75 * SHORT, 0.25 * SHORT] and now[0] == 100.0 + 2 * SHORT

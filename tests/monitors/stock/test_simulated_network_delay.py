@@ -11,6 +11,7 @@ from support.wait import HANG
 
 import yarpy
 from yarpy import LocalProtocolError
+from yarpy.link.send import window
 from yarpy.monitors.stock import simulated_network_delay
 from yarpy.monitors.stock.simulated_network_delay import SimulatedNetworkDelay
 from yarpy.wire.message import DATA, Message
@@ -42,6 +43,7 @@ def test_wrong_delay(tokens: str) -> None:
 def test_other_connections_go_on(monkeypatch: pytest.MonkeyPatch) -> None:
     """At the receiver's end only the slow connection waits."""
     monkeypatch.setattr(simulated_network_delay, "_MOST", 1e6)
+    monkeypatch.setattr(window, "WINDOW_SECONDS", 60.0)  # else a writer who is kept waits for it
     names = yarpy.LocalNames()
     with (
         yarpy.BufferedPort("/out", strict=True, names=names) as out,

@@ -115,7 +115,7 @@ def test_a_killed_reader_is_connected_again(number: int) -> None:
                 while "got" not in reader.stdout and time.monotonic() < deadline:
                     writer.write([turn])
                     time.sleep(0.005)
-                reader.wait_line(f"got {turn}", timeout=1)
+                reader.wait_line(f"got {turn}", timeout=HANG)
                 reader.kill()
             writer.write(["nobody"])
             writer.write(["there"])
@@ -268,7 +268,7 @@ def test_what_was_disconnected_stays_disconnected() -> None:
         yarpy.BufferedPort("/again/in") as reader,
     ):
         writer.connect("/again/in")
-        reader.wait_for_inputs(timeout=2)
+        reader.wait_for_inputs(timeout=HANG)
         assert writer.disconnect("/again/in")
         time.sleep(1.2)
         assert not writer.outputs
@@ -312,7 +312,7 @@ def test_what_the_receiver_disconnected_stays_disconnected(carrier: str) -> None
         yarpy.BufferedPort("/again/in") as reader,
     ):
         writer.connect("/again/in", carrier)
-        assert reader.wait_for_inputs(timeout=2)
+        assert reader.wait_for_inputs(timeout=HANG)
         answer = probe.ask(reader.contact, ["del", "/again/out"])
         assert answer == [0, "Removing connection from /again/out to /again/in\r\n"]
         for _ in range(12):
@@ -347,7 +347,7 @@ def test_the_way_back_is_another_connection() -> None:
     ):
         a.connect("/again/b")
         b.connect("/again/a")
-        assert a.wait_for_inputs(timeout=2) and b.wait_for_inputs(timeout=2)
+        assert a.wait_for_inputs(timeout=HANG) and b.wait_for_inputs(timeout=HANG)
         probe.drop_input(b.contact, "/again/a")
         time.sleep(0.7)
         assert not (b.inputs or a.outputs)
