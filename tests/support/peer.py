@@ -196,6 +196,7 @@ PEERS: dict[str, Callable[[], str]] = {
     "rosmaster": _programs(*_ROS_TOOLS, package=" ".join(f"python3-{n}" for n in _ROS_TOOLS)),
     "image_view": _files("/usr/lib/image_view/image_saver", package="ros-image-view"),
     "thrift": _made(thrift_venv.prepare),
+    "thrift_compiler": _programs("thrift", package="thrift-compiler"),
     "torch": _torch,
     "tsc": _programs("tsc", package="node-typescript"),
     "windows": _made(windows.prepare),

@@ -23,6 +23,15 @@ def free_port() -> int:
     return free_block(1)
 
 
+def answers(port: int) -> bool:
+    """Return whether somebody accepts connections there."""
+    try:
+        socket.create_connection(("127.0.0.1", port), 1).close()
+    except OSError:
+        return False
+    return True
+
+
 def free_block(size: int) -> int:
     """The first of `size` consecutive free port numbers (a name server hands out the others)."""
     for attempt in range(1000):

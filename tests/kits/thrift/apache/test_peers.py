@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import json
-import socket
 import subprocess
 from collections.abc import Iterator
 from pathlib import Path
@@ -11,7 +10,7 @@ from pathlib import Path
 import pytest
 from support import thrift_venv
 from support.peer import brings
-from support.port import free_port
+from support.port import answers, free_port
 from support.thrift_module import ROWS, apache, everything, service
 from support.wait import HANG, wait_until
 
@@ -70,21 +69,13 @@ def target(request: pytest.FixtureRequest, python: str) -> Iterator[str]:
     command = [python, "-P", str(SUPPORT / "thriftpy2_peer.py"), "server"]
     peer = subprocess.Popen([*command, protocol, transport, str(port)])
     try:
-        wait_until(lambda: _answers(port), what="the server listens")
+        wait_until(lambda: answers(port), what="the server listens")
         added = {"compact": "+compact", "framed": "+framed"}
         way = added.get(protocol, "") + added.get(transport, "")
         yield f"thrift{way}://127.0.0.1:{port}"
     finally:
         peer.kill()
         peer.wait()
-
-
-def _answers(port: int) -> bool:
-    try:
-        socket.create_connection(("127.0.0.1", port), 1).close()
-    except OSError:
-        return False
-    return True
 
 
 def test_a_server_of_thriftpy2(target: str) -> None:
