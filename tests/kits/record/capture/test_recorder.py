@@ -1,6 +1,7 @@
 """Recorders: what comes is in the file, and nobody who sends waits for a disk."""
 
 import errno
+import io
 import itertools
 import json
 import os
@@ -25,6 +26,7 @@ from yarpy.kits.record.capture import recorder as module
 from yarpy.kits.record.capture.disk_space import DiskSpace
 from yarpy.kits.record.capture.recorder import Recorder
 from yarpy.kits.record.dumper.part import Part
+from yarpy.platform import gathered_write
 
 
 class Disk(NamedTuple):
@@ -101,17 +103,17 @@ def test_what_was_flushed_can_be_read_meanwhile(tmp_path, names, out, compressio
 def test_a_slow_disk_costs_messages_and_holds_nobody_up(tmp_path, names, out, monkeypatch) -> None:
     """The disk does not take anything until it is let; writers go on."""
     free = threading.Event()
-    real = os.writev
+    real = gathered_write.write
 
-    def slow(handle: int, views: list[memoryview]) -> int:
+    def slow(file: io.FileIO, views: list[memoryview]) -> int:
         if not free.wait(HANG):
             raise OSError(errno.EIO, "the test hangs")
-        return real(handle, views)
+        return real(file, views)
 
     told: list[str] = []
     with Recorder("/out", path=tmp_path / "x", memory=100_000, names=names, tell=told.append) as r:
         assert out.wait_for_outputs(timeout=HANG)
-        monkeypatch.setattr(os, "writev", slow)
+        monkeypatch.setattr(gathered_write, "write", slow)
         for n in range(100):
             assert out.write([n, bytes(5000)], yarpy.Stamp(n, 1.0), timeout=HANG) == 1
         wait_until(lambda: r.messages + r.lost == 100)
@@ -137,10 +139,10 @@ def test_a_disk_that_fails(tmp_path, names, out, monkeypatch) -> None:
         out.write([1])
         wait_until(lambda: recorder.messages == 1 and recorder.held == 0)
 
-        def full(handle: int, views: list[memoryview]) -> int:
+        def full(file: io.FileIO, views: list[memoryview]) -> int:
             raise OSError(errno.ENOSPC, "No space left on device")
 
-        monkeypatch.setattr(os, "writev", full)
+        monkeypatch.setattr(gathered_write, "write", full)
         out.write([2])
         assert recorder.ended.wait(HANG)
         monkeypatch.undo()
@@ -164,7 +166,7 @@ def test_what_one_of_both_has_is_not_lost(tmp_path, names, out, monkeypatch, fai
 
         with monkeypatch.context() as patch:
             if failing == "file":
-                patch.setattr(os, "writev", full)
+                patch.setattr(gathered_write, "write", full)
             else:
                 patch.setattr(Part, "add", full)
             out.write([2])

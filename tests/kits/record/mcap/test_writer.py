@@ -1,7 +1,7 @@
 """MCAP files, as the library of their inventors reads them."""
 
 import errno
-import os
+import io
 from pathlib import Path
 
 import mcap.reader
@@ -13,6 +13,7 @@ from yarpy.kits.record.mcap import writer as module
 from yarpy.kits.record.mcap.pieces import COMPRESSIONS
 from yarpy.kits.record.mcap.reader import McapFile
 from yarpy.kits.record.mcap.writer import McapWriter
+from yarpy.platform import gathered_write
 
 
 @pytest.mark.parametrize("compression", COMPRESSIONS)
@@ -101,16 +102,16 @@ def test_a_write_that_fails_is_taken_back(tmp_path: Path, monkeypatch: pytest.Mo
         writer.flush()
         size = path.stat().st_size
         fill(writer, 4)
-        real = os.writev
+        real = gathered_write.write
         calls = []
 
-        def full(handle: int, views: list[memoryview]) -> int:
-            calls.append(real(handle, [views[0][:20]]))
+        def full(file: io.FileIO, views: list[memoryview]) -> int:
+            calls.append(real(file, [views[0][:20]]))
             if len(calls) > 1:
                 raise OSError(errno.ENOSPC, "No space left on device")
             return calls[0]
 
-        monkeypatch.setattr(os, "writev", full)
+        monkeypatch.setattr(gathered_write, "write", full)
         with pytest.raises(OSError, match="No space"):
             writer.flush()
         monkeypatch.undo()
@@ -118,13 +119,6 @@ def test_a_write_that_fails_is_taken_back(tmp_path: Path, monkeypatch: pytest.Mo
     with McapFile(path) as file:
         assert file.index.complete and file.index.counts == {1: 2, 2: 2}
         assert len([*file.records()]) == 4
-
-
-def test_without_scattered_writes(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    """As on Windows."""
-    monkeypatch.delattr(os, "writev")
-    with McapFile(recorded(tmp_path / "x.mcap")) as file:
-        assert len([*file.records()]) == 10
 
 
 def test_a_compression_that_nobody_knows(tmp_path: Path) -> None:
@@ -136,7 +130,7 @@ def test_a_full_disk_at_the_beginning(tmp_path: Path, monkeypatch: pytest.Monkey
     def full(*_: object) -> int:
         raise OSError(errno.ENOSPC, "No space left on device")
 
-    monkeypatch.setattr(os, "writev", full)
+    monkeypatch.setattr(gathered_write, "write", full)
     with pytest.raises(OSError, match=r"No space left on device: '.*x\.mcap'"):
         McapWriter(tmp_path / "x.mcap")
     assert not [*tmp_path.iterdir()]

@@ -6,15 +6,14 @@ Rules: large pieces are never copied.
 from __future__ import annotations
 
 import io
-import os
 from collections.abc import Callable, Sequence
 from typing import Final
 
 from yarpy.errors import LocalProtocolError, UnknownPlugin
 from yarpy.kits.record.mcap.layout import Bytes
+from yarpy.platform import gathered_write
 
 COMPRESSIONS: Final = ("none", "lz4", "zstd")
-_AT_ONCE: Final = 512  # pieces in one system call
 _SMALL: Final = 4096  # bytes: smaller pieces are joined first
 
 
@@ -39,12 +38,8 @@ def write_all(file: io.FileIO, parts: Sequence[Bytes]) -> int:
     """Write all parts one after the other; how many bytes these were."""
     views = [memoryview(part).cast("B") for part in parts if len(part)]
     total, at = sum(map(len, views)), 0
-    together = getattr(os, "writev", None)
     while at < len(views):
-        if together is not None:
-            done = together(file.fileno(), views[at : at + _AT_ONCE])
-        else:
-            done = file.write(views[at]) or 0
+        done = gathered_write.write(file, views[at : at + gathered_write.MOST])
         while at < len(views) and done >= len(views[at]):
             done -= len(views[at])
             at += 1
