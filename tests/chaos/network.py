@@ -59,8 +59,8 @@ class Link:
 
 
 def _needs_root(program: str) -> None:
-    if os.geteuid():
-        raise Missing("it takes root")
+    if not hasattr(os, "geteuid") or os.geteuid():
+        raise Missing("it takes root of a Unix")
     if shutil.which(program) is None:
         raise Missing(f"there is no {program}")
 

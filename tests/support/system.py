@@ -27,6 +27,9 @@ NO_MARKS: Final = (
 )
 NO_TAKEN: Final = "" if sys.platform == "linux" else "only Linux tells how much a peer has taken"
 NO_LINKS: Final = "" if sys.platform != "win32" else "on Windows it takes a right to make a link"
+NO_UNLINK: Final = (
+    "" if sys.platform != "win32" else "Windows lets nobody delete a file that a program has open"
+)
 NO_GROUPS: Final = (
     ""
     if sys.platform != "win32"

@@ -79,6 +79,12 @@ WHEELS = (
     "mcap",
     "lz4",
     "zstandard",
+    "cyclonedds",
+    "rosbags",
+    "xxhash",
+    "pyyaml",
+    "pynacl",
+    "pyserial",
 )
 TESTING = ("pytest", "pytest-timeout", "hypothesis")
 LIMIT = 240.0  # seconds for a file
@@ -94,7 +100,7 @@ def prepare() -> Path:
     """
     if shutil.which("wine") is None:
         raise MissingPeer("no wine here: apt-get install wine wine64")
-    folder = peers_directory() / "windows-cpython-3.11.9-4"
+    folder = peers_directory() / "windows-cpython-3.11.9-5"
     folder.mkdir(parents=True, exist_ok=True)
     with (folder / "lock").open("w") as lock:
         hold(lock)

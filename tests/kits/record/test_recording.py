@@ -31,7 +31,9 @@ def test_several_files_on_one_time_axis(two: Path) -> None:
         assert (found.begin, found.complete, found.damages) == (START / 1e9, True, [])
         assert found.end == (START + 29 * STEP) / 1e9
         assert [note["what"] for note in found.notes()] == ["mark"]
-        assert repr(found).startswith("<Recording /") and repr(found).endswith(" s, 3 ports>")
+        assert repr(found).startswith(f"<Recording {two / 'one.mcap'} ") and repr(found).endswith(
+            " s, 3 ports>"
+        )
     with record.open(two / "two.mcap", two / "one.mcap") as found:
         assert len([*found]) == 30
 

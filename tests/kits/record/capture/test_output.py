@@ -5,6 +5,7 @@ from pathlib import Path
 
 import pytest
 from support.recordings import START, payload_of
+from support.system import NO_UNLINK
 
 from yarpy import record
 from yarpy.kits.record.capture.disk_space import Split
@@ -78,6 +79,7 @@ def test_a_new_file_on_request(tmp_path: Path) -> None:
     assert output.size == sum(path.stat().st_size for path in output.files)
 
 
+@pytest.mark.skipif(bool(NO_UNLINK), reason=NO_UNLINK)
 def test_a_folder_that_is_taken_away(tmp_path: Path) -> None:
     output = Output(tmp_path / "deep" / "x")
     output.add(taken(1))
