@@ -1,5 +1,6 @@
 """Projects: their files, and names that are none."""
 
+import sys
 import tomllib
 from pathlib import Path
 
@@ -13,7 +14,7 @@ from yarpy.kits.launch.project.create import create
 def test_files_are_whole(tmp_path: Path) -> None:
     written = create("ball-tracker", tmp_path)
     place = tmp_path / "ball-tracker"
-    assert {str(path.relative_to(place)) for path in written} == {
+    assert {path.relative_to(place).as_posix() for path in written} == {
         *("pyproject.toml", "README.md", "ball-tracker.ini", "ball-tracker.toml"),
         *("ball_tracker/__init__.py", "ball_tracker/module.py", "tests/test_module.py"),
     }
@@ -26,6 +27,22 @@ def test_files_are_whole(tmp_path: Path) -> None:
     assert said["project"]["scripts"] == {"ball-tracker": "ball_tracker.module:main"}
     application = load(place / "ball-tracker.toml")
     assert application.problems == [] and len(application.modules) == 3
+
+
+@pytest.mark.parametrize("python", [r"C:\Program Files\new\python.exe", "/opt/a 'b'/python"])
+def test_programs_are_called_as_they_are(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, python: str
+) -> None:
+    """Whatever is in the path of Python."""
+    python = str(Path(python))
+    monkeypatch.setattr(sys, "executable", python)
+    create("mine", tmp_path)
+    said = tomllib.loads((tmp_path / "mine" / "mine.toml").read_text("utf-8"))["programs"]
+    assert said["module"]["command"] == [python, "-m", "mine.module", "--from", "mine.ini"]
+    assert said["sink"]["command"] == [python, "-m", "yarpy", "read", "/mine/sink"]
+    words = said["source"]["command"]
+    assert words[:2] == [python, "-c"]
+    compile(words[2], "source", "exec")
 
 
 @pytest.mark.parametrize(

@@ -6,8 +6,8 @@ Rules: what is there already is never touched. The files are texts in `template`
 
 from __future__ import annotations
 
+import json
 import re
-import shlex
 import shutil
 import sys
 from importlib.resources import files
@@ -55,13 +55,14 @@ def create(name: str, folder: Path) -> list[Path]:
 
 
 def _programs() -> dict[str, str]:
-    """Return how Python and yarpy are called where the project is made: by their names, if these
-    mean the ones that run now."""
+    """Return how Python and yarpy are called where the project is made, as words of TOML: by their
+    names, if these mean the ones that run now."""
     own = Path(sys.executable)
     found = shutil.which("python")
     python = "python" if found and Path(found).absolute() == own.absolute() else str(own)
     beside = shutil.which("yarpy", path=str(own.parent))
     yarpy = shutil.which("yarpy")
     if yarpy is not None and yarpy == beside:
-        return {"python": "python", "yarpy": "yarpy"}
-    return {"python": shlex.quote(python), "yarpy": f"{shlex.quote(python)} -m yarpy"}
+        return {"python": '"python"', "yarpy": '"yarpy"'}
+    word = json.dumps(python)
+    return {"python": word, "yarpy": f'{word}, "-m", "yarpy"'}
