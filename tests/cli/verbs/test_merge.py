@@ -1,6 +1,7 @@
 """`yarpy merge`."""
 
 import pytest
+from support.wait import HANG
 
 import yarpy
 from yarpy.cli.verbs.merge import Merger
@@ -31,13 +32,13 @@ def test_two_sources(cli, names, words, output, worker):
         assert [link.name for link in b.outputs] == [f"{worker}1"]
         sink.listen_to(output)
         a.write([1, "x"])
-        first = sink.read(timeout=10)
+        first = sink.read(timeout=HANG)
         assert first.value == [1, "x"]
         b.write([2.5])
-        second = sink.read(timeout=10)
+        second = sink.read(timeout=HANG)
         assert second.value == [1, "x", 2.5]
         a.write([3])
-        assert sink.read(timeout=10).value == [3, 2.5]
+        assert sink.read(timeout=HANG).value == [3, 2.5]
         assert first.stamp is not None and second.stamp is not None
         assert (first.stamp.count, second.stamp.count) == (0, 1)
         assert second.stamp.time >= first.stamp.time > 1e9

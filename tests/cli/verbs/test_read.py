@@ -20,7 +20,7 @@ def writer(names):
 def test_prints_what_arrives(cli, writer):
     """The messages of the recorded `yarp read`, and its lines."""
     with cli.start("read", "/read/a", "/read/writer") as process:
-        assert writer.wait_for_outputs(timeout=10)
+        assert writer.wait_for_outputs(timeout=HANG)
         for text in ("1 ping 3.14", "hello", "(a (1 2)) [set]", '"two words" ""', "", "x"):
             writer.write(yarpy.Bottle.from_text(text))
         writer.write(yarpy.Stamp(7, 1.25))
@@ -67,7 +67,7 @@ def test_image_is_told_in_short(cli, writer):
 
 def test_the_end_of_verbatim_lines_ends_it(cli, writer):
     with cli.start("read", "/read/c", "/read/writer") as process:
-        assert writer.wait_for_outputs(timeout=10)
+        assert writer.wait_for_outputs(timeout=HANG)
         writer.write([0, "line"])
         writer.write([1, "<EOF>"])
         assert process.wait() == 0
@@ -77,7 +77,7 @@ def test_the_end_of_verbatim_lines_ends_it(cli, writer):
 def test_envelope_trim_and_once(cli, writer):
     words = ("read", "/read/d", "envelope", "trim", "10", "/read/writer", "once")
     with cli.start(*words) as process:
-        assert writer.wait_for_outputs(timeout=10)
+        assert writer.wait_for_outputs(timeout=HANG)
         writer.write(yarpy.Bottle.from_text("1 ping 3.14"), yarpy.Stamp(3, 4.5))
         assert process.wait() == 0
     assert process.stdout == "3 4.5 \n1 ping 3.1\n"
@@ -85,7 +85,7 @@ def test_envelope_trim_and_once(cli, writer):
 
 def test_json(cli, writer):
     with cli.start("read", "--json", "/read/e", "/read/writer") as process:
-        assert writer.wait_for_outputs(timeout=10)
+        assert writer.wait_for_outputs(timeout=HANG)
         writer.write(yarpy.Bottle(["x", 1, [2.5]]), yarpy.Stamp(3, 4.5))
         writer.write([0, "a line"])
         process.wait_line("line", stream="out")
@@ -97,7 +97,7 @@ def test_json(cli, writer):
 
 def test_keeps_every_message(cli, writer):
     with cli.start("read", "/read/f", "/read/writer") as process:
-        assert writer.wait_for_outputs(timeout=10)
+        assert writer.wait_for_outputs(timeout=HANG)
         for number in range(2000):
             writer.write([number])
         process.wait_line("^1999$", stream="out")
@@ -110,7 +110,7 @@ def test_what_is_no_bottle_does_not_end_it(cli, writer):
             return (b"\xff" * 20,)
 
     with cli.start("read", "/read/g", "/read/writer") as process:
-        assert writer.wait_for_outputs(timeout=10)
+        assert writer.wait_for_outputs(timeout=HANG)
         writer.write(Odd())
         writer.write(["x"])
         process.wait_line("^x$", stream="out")
@@ -145,7 +145,7 @@ def test_without_a_name_server(lone):
         yarpy.Port("", names=None) as writer,
         lone.start("read", "...", f"/{writer.address}") as process,
     ):
-        assert writer.wait_for_outputs(timeout=10)
+        assert writer.wait_for_outputs(timeout=HANG)
         writer.write(["x"])
         process.wait_line("^x$", stream="out")
 

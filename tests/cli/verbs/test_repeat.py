@@ -2,6 +2,8 @@
 
 import signal
 
+from support.wait import HANG
+
 import yarpy
 
 
@@ -16,7 +18,7 @@ def test_sends_on_what_comes(cli, names):
         sink.listen_to("/repeat/a")
         for value in ([1, "x"], yarpy.Vector([1.0, 2.0]), "a scalar"):
             source.write(value, yarpy.Stamp(5, 1.5))
-            message = sink.read(timeout=10)
+            message = sink.read(timeout=HANG)
             assert message.value == value
             assert message.stamp == yarpy.Stamp(5, 1.5)
             assert message.source == "/repeat/a"

@@ -2,6 +2,8 @@
 
 import signal
 
+from support.wait import HANG
+
 import yarpy
 
 
@@ -40,9 +42,9 @@ def test_single_closes_each_connection(cli, names):
         process.wait_line("active", stream="err")
         with yarpy.RpcClient("/rs/c", names=names) as client:
             link = client.outputs[0]
-            assert client.call("x", timeout=10) == ["x"]
+            assert client.call("x", timeout=HANG) == ["x"]
             process.wait_line("Waiting", count=2)
-            assert client.call("y", timeout=10) == ["y"]  # over a new connection
+            assert client.call("y", timeout=HANG) == ["y"]  # over a new connection
             assert client.outputs[0].stats.messages == 1
             assert link.stats.messages == 1
 

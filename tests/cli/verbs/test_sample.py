@@ -3,6 +3,7 @@
 import time
 
 import pytest
+from support.wait import HANG
 
 import yarpy
 
@@ -14,13 +15,13 @@ def test_drops_and_repeats_at_a_constant_rate(cli, names):
         yarpy.BufferedPort("/sample/sink", strict=True, names=names) as sink,
         cli.start("sample", *words) as process,
     ):
-        assert source.wait_for_outputs(timeout=10)
+        assert source.wait_for_outputs(timeout=HANG)
         sink.listen_to("/sample/a")
         started = time.monotonic()
         for number in range(50):
             source.write([number], yarpy.Stamp(number, 1.0))
             time.sleep(0.01)
-        values = [sink.read(timeout=10) for _ in range(30)]
+        values = [sink.read(timeout=HANG) for _ in range(30)]
         passed = time.monotonic() - started
         numbers = [message.value[0] for message in values]
         assert numbers == sorted(numbers)

@@ -130,7 +130,7 @@ def test_files_for_browsers(lone, port, tmp_path):
     with lone.start("server", *options) as process:
         process.wait_line(f"^Files of {tmp_path} are shown at http://127.0.0.1:{port}/web/$")
         process.wait_line(r"^Ok\. Ready!$")
-        with urllib.request.urlopen(f"http://127.0.0.1:{port}/web/", timeout=10) as page:
+        with urllib.request.urlopen(f"http://127.0.0.1:{port}/web/", timeout=HANG) as page:
             assert page.read() == b"<h1>robots</h1>"
     done = lone.run("server", "--web", str(tmp_path / "none"))
     assert done.returncode != 0

@@ -1,6 +1,7 @@
 """`yarpy split`."""
 
 import pytest
+from support.wait import HANG
 
 import yarpy
 from yarpy.cli.verbs.split import part
@@ -13,16 +14,16 @@ def test_each_element_has_a_port(cli, names):
         yarpy.BufferedPort("/split/second", strict=True, names=names) as second,
         cli.start("split", "/split/source", "--carrier", "tcp") as process,
     ):
-        assert source.wait_for_outputs(timeout=10)
+        assert source.wait_for_outputs(timeout=HANG)
         source.write([1])
         process.wait_line("^Output goes to /split/source/split0:o$", stream="out")
         first.listen_to("/split/source/split0:o")
         source.write([2, ["x", "y"]], yarpy.Stamp(3, 1.5))  # longer: one more port
         process.wait_line("^Output goes to /split/source/split1:o$", stream="out")
         second.listen_to("/split/source/split1:o")
-        assert first.read(timeout=10).value == [2]
+        assert first.read(timeout=HANG).value == [2]
         source.write([3, ["z"]], yarpy.Stamp(4, 2.5))
-        message = second.read(timeout=10)
+        message = second.read(timeout=HANG)
         assert (message.value, message.stamp) == (["z"], yarpy.Stamp(4, 2.5))
         process.stop()
     assert names.query("/split/source/split1:o") is None

@@ -4,6 +4,7 @@ import signal
 from typing import NamedTuple
 
 import pytest
+from support.wait import HANG
 
 import yarpy
 from yarpy.cli.verbs.write import taken, value_of
@@ -16,7 +17,7 @@ def reader(names):
 
 
 def values(reader, count):
-    return [reader.read(timeout=10).value for _ in range(count)]
+    return [reader.read(timeout=HANG).value for _ in range(count)]
 
 
 def test_sends_lines(cli, reader):
@@ -71,7 +72,7 @@ def test_period(cli, reader):
         process.write_line("x")
         assert values(reader, 4) == [["x"]] * 4
         process.write_line("y")
-        while reader.read(timeout=10).value != ["y"]:
+        while reader.read(timeout=HANG).value != ["y"]:
             pass
         assert values(reader, 2) == [["y"]] * 2
         process.end_input()
