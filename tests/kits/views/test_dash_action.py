@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 import pytest
+from support.system import NO_MARKS
 from support.wait import wait_until
 
 import yarpy
@@ -81,6 +82,7 @@ def test_a_carrier_that_does_not_work_changes_nothing(
     assert actions.undo_text == ""
 
 
+@pytest.mark.skipif(bool(NO_MARKS), reason=NO_MARKS)
 def test_a_priority_and_back(names: yarpy.LocalNames, out: yarpy.Port) -> None:
     actions = Actions(names)
     out.connect("/in", "tcp")
@@ -126,6 +128,7 @@ def test_what_cannot_be_done_says_so(
     assert actions.undo_text == ""
 
 
+@pytest.mark.skipif(bool(NO_MARKS), reason=NO_MARKS)
 @pytest.mark.parametrize(
     "act", [["carrier", "/out", "/in", "fast_tcp"], ["disconnect", "/out", "/in"]]
 )

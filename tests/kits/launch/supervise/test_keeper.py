@@ -1,6 +1,7 @@
 """Connections that are kept: made when both ports are there, and again when one comes back."""
 
 import pytest
+from support.system import NO_MARKS
 from support.wait import HANG, wait_until
 
 import yarpy
@@ -78,6 +79,7 @@ def test_only_connections_of_others_are_ended(network: yarpy.LocalNames) -> None
         assert [one.target for one in out.outputs] == ["/own"]
 
 
+@pytest.mark.skipif(bool(NO_MARKS), reason=NO_MARKS)
 def test_priorities_are_asked_for(network: yarpy.LocalNames) -> None:
     wanted = Connection("/out", "/in", source_qos="level:high")
     keeper = Keeper([wanted], network)

@@ -7,7 +7,7 @@ import pytest
 
 import yarpy
 from yarpy import Bottle
-from yarpy.kits.launch.supervise import leftover
+from yarpy.kits.launch.supervise import leftover, process
 from yarpy.kits.launch.supervise.leftover import end_all, end_away, told
 
 
@@ -15,6 +15,7 @@ def test_told() -> None:
     assert told({8: "b", 7: "a"}) == "a (pid 7), b (pid 8)"
 
 
+@pytest.mark.skipif(not process.known(), reason="this system has no /proc to look at")
 def test_both_the_willing_and_the_deaf_end() -> None:
     deaf = ["sh", "-c", "trap '' TERM; echo ready; while :; do sleep 0.05; done"]
     children = [
@@ -33,6 +34,7 @@ def test_both_the_willing_and_the_deaf_end() -> None:
             child.wait()
 
 
+@pytest.mark.skipif(not process.known(), reason="this system has no /proc to look at")
 def test_who_is_gone_is_no_trouble() -> None:
     child = subprocess.Popen(["true"])
     child.wait()

@@ -246,7 +246,7 @@ def test_lines_are_numbered_and_the_oldest_are_forgotten() -> None:
 
 @pytest.mark.parametrize(
     ("code", "words"),
-    [(0, "ended with 0"), (-9, "killed by SIGKILL"), (-200, "killed by signal 200")],
+    [(0, "ended with 0"), (-15, "killed by SIGTERM"), (-200, "killed by signal 200")],
 )
 def test_endings(code: int, words: str) -> None:
     assert ending(code) == words

@@ -1,5 +1,7 @@
 """Files that change while an application runs."""
 
+import json
+import sys
 from collections.abc import Iterator
 from pathlib import Path
 
@@ -12,7 +14,14 @@ from yarpy.kits.launch.application.load import load
 from yarpy.kits.launch.supervise.supervisor import Supervisor
 from yarpy.kits.launch.supervise.watch import Watch, named
 
-TEXT = "name = 'app'\n[programs]\nscript = 'sh run.sh'\nother = 'sleep 600'\n"
+PYTHON = json.dumps(sys.executable)
+SCRIPT = f"name = 'app'\n[programs]\nscript = {{command = [{PYTHON}, 'run.py']}}\n"
+SLEEP = f"{{command = [{PYTHON}, '-c', 'import time; time.sleep(600)']}}\n"
+TEXT = f"{SCRIPT}other = {SLEEP}"
+
+
+def sleeping(seconds: int) -> str:
+    return f"import time; time.sleep({seconds})"
 
 
 class Running:
@@ -20,8 +29,8 @@ class Running:
 
     def __init__(self, folder: Path, names: yarpy.LocalNames) -> None:
         self.path = folder / "app.toml"
-        self.script = folder / "run.sh"
-        self.script.write_text("exec sleep 600")
+        self.script = folder / "run.py"
+        self.script.write_text(sleeping(600))
         self.path.write_text(TEXT)
         self.news: list[str] = []
         self.supervisor = Supervisor(load(self.path), grace=1.0, names=names)
@@ -57,17 +66,17 @@ def running(
 
 def test_a_script_that_changes_starts_again_and_nothing_else(running: Running) -> None:
     before = running.pids()
-    running.change(running.script, "exec sleep 601")
-    assert running.news == ["starts again: run.sh has changed"]
+    running.change(running.script, sleeping(601))
+    assert running.news == ["starts again: run.py has changed"]
     wait_until(lambda: running.pids()["script"] != before["script"])
     running.settle()
     assert running.pids()["other"] == before["other"]
 
 
 def test_a_file_that_is_still_written_is_waited_for(running: Running) -> None:
-    running.script.write_text("exec sleep 60")
+    running.script.write_text(sleeping(60))
     running.watch.look()
-    running.script.write_text("exec sleep 6000")
+    running.script.write_text(sleeping(6000))
     running.watch.look()
     assert running.news == []
     running.watch.look()
@@ -76,8 +85,7 @@ def test_a_file_that_is_still_written_is_waited_for(running: Running) -> None:
 
 def test_the_description_changes(running: Running) -> None:
     before = running.pids()
-    text = "name = 'app'\n[programs]\nscript = 'sh run.sh'\nthird = 'sleep 600'\n"
-    running.change(running.path, text)
+    running.change(running.path, f"{SCRIPT}third = {SLEEP}")
     assert running.news == ["third is new", "other is no longer in the file"]
     running.settle()
     after = running.pids()

@@ -1,13 +1,15 @@
 """`yarpy check`: applications and robots, each problem with its place."""
 
+import sys
+
 import pytest
 from click.testing import CliRunner
 
 from yarpy.kits.launch.verbs.check_file import FEW, command
 
-APPLICATION = """<application>
+APPLICATION = f"""<application>
 <name>app</name>
-<module><name>sleep</name><Node>localhost</Node></module>
+<module><Node>localhost</Node><name>{sys.executable}</name></module>
 <conection/>
 </application>
 """
@@ -33,7 +35,7 @@ def test_an_application_and_a_robot(tmp_path) -> None:
     code, lines = check("--offline", one, two)
     assert code == 1
     assert lines == [
-        f'{one}:3:27: warning: <Node> in <module> is ignored: write it in lower case, "node"',
+        f'{one}:3:9: warning: <Node> in <module> is ignored: write it in lower case, "node"',
         f'{one}:4:1: warning: <conection> in <application> is ignored: did you mean "connection"?',
         "app: 1 program, 0 connections, 2 problems",
         f'{two}:3:39: error: there is no phase "startupp": did you mean "startup"?',

@@ -1,6 +1,7 @@
 """`yarpy down`; test_up has what it ends."""
 
 import json
+import os
 import signal
 from pathlib import Path
 
@@ -17,6 +18,7 @@ def test_where_nothing_runs(cli) -> None:
     assert done.returncode == 1 and 'no application called "other" runs here' in done.stderr
 
 
+@pytest.mark.skipif(os.name != "posix", reason="Windows has no `yarpy run --server`")
 def test_what_may_go_on_at_a_server_is_tried_again(cli, monkeypatch: pytest.MonkeyPatch) -> None:
     """A server that stands still, as one whose computer is gone, and then goes on."""
     left = {"run": "", "programs": [], "away": {"lab:far": "/down/node"}}
