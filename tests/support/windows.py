@@ -85,6 +85,7 @@ WHEELS = (
     "pyyaml",
     "pynacl",
     "pyserial",
+    "paho-mqtt",
 )
 TESTING = ("pytest", "pytest-timeout", "hypothesis")
 LIMIT = 240.0  # seconds for a file

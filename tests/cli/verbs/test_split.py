@@ -1,5 +1,7 @@
 """`yarpy split`."""
 
+import sys
+
 import pytest
 from support.wait import HANG
 
@@ -26,7 +28,8 @@ def test_each_element_has_a_port(cli, names):
         message = second.read(timeout=HANG)
         assert (message.value, message.stamp) == (["z"], yarpy.Stamp(4, 2.5))
         process.stop()
-    assert names.query("/split/source/split1:o") is None
+    if sys.platform != "win32":  # nobody asks a program to end there: it is ended
+        assert names.query("/split/source/split1:o") is None
 
 
 def test_a_source_that_is_not_there(here):

@@ -1,6 +1,7 @@
 """`yarpy where`."""
 
 import json
+from pathlib import Path
 
 import pytest
 
@@ -46,7 +47,7 @@ def test_none_is_configured(lone):
     said = lone.run("where")
     assert said.returncode == 1
     assert "== No address for a YARP name server is available.\n" in said.stdout
-    assert f"{lone.environment['YARP_CONFIG_HOME']}/yarp.conf" in said.stdout
+    assert str(Path(lone.environment["YARP_CONFIG_HOME"], "yarp.conf")) in said.stdout
 
 
 def test_one_of_several(here, server, monkeypatch):
