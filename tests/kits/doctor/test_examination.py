@@ -4,18 +4,21 @@ from __future__ import annotations
 
 import os
 import re
+import threading
 import time
 from collections.abc import Iterator
 from pathlib import Path
+from types import SimpleNamespace
 
 import pytest
 from kits.doctor.faults import FAULTS, Fault, World
 from support.doctor import made_up
 from support.port import free_port
+from support.wait import HANG, runs, wait_until
 
 import yarpy
 from yarpy import registry
-from yarpy.kits.doctor import Case, Finding, examine
+from yarpy.kits.doctor import Case, Finding, examination, examine
 from yarpy.network.traffic import End, Flow
 
 WINDOW = 0.3  # seconds between two looks
@@ -96,7 +99,7 @@ def test_where_all_is_well_nothing_is_found(world: World) -> None:
 
 def hangs(case: Case) -> Iterator[Finding]:
     yield Finding("before", "it", "something was found")
-    time.sleep(5)
+    threading.Event().wait(HANG)
 
 
 def fails(case: Case) -> Iterator[Finding]:
@@ -109,11 +112,20 @@ def endless(case: Case) -> Iterator[Finding]:
         yield Finding("again", "it", "and again")
 
 
+class Swift(threading.Thread):
+    """Is at its end, or where it hangs, before its time begins to count."""
+
+    def start(self) -> None:
+        super().start()
+        wait_until(lambda: not self.is_alive() or runs("Event.wait", self.ident or 0))
+
+
 def test_a_family_that_fails_costs_no_other(monkeypatch: pytest.MonkeyPatch) -> None:
     families = registry.Registry("findings", {})
     monkeypatch.setattr(registry, "findings", families)
     for family in (fails, hangs, endless):
         families.add(family.__name__, family)
+    monkeypatch.setattr(examination, "threading", SimpleNamespace(Thread=Swift))
     found = examine(made_up(), timeout=0.2)
     names = [one.probe for one in found]
     assert names == ["before", "again", "first", "unfinished", "unfinished"]

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import signal
 import threading
-import time
 from collections.abc import Iterator
+from contextlib import suppress
 
 import pytest
 from support.port import free_block
@@ -50,11 +50,19 @@ def test_first_value_is_not_lost_and_topics_are_whole_frames(places: tuple[str, 
 def test_newest_alone(places: tuple[str, str]) -> None:
     pub, sub = places
     out, every, newest = Out("/t", sub), In("/t", pub), In("/t", pub, newest=True)
-    assert out.wait(HANG)
-    time.sleep(0.2)  # of two subscriptions the broker tells once
+
+    def is_heard(into: In) -> bool:
+        out.send([b"early"])
+        with suppress(yarpy.Timeout):
+            return bool(into.receive(0.05))
+        return False
+
+    for into in (every, newest):  # of two subscriptions the broker tells once
+        wait_until(lambda into=into: is_heard(into))  # type: ignore[misc]
     for number in range(5):
         out.send([b"%d" % number])
-    assert [every.receive(HANG) for _ in range(5)][-1] == [b"4"]
+    heard = iter(lambda: every.receive(HANG), [b"4"])
+    assert [one for one in heard if one != [b"early"]] == [[b"%d" % one] for one in range(4)]
     wait_until(lambda: newest.receive(HANG) == [b"4"])
     for one in (out, every, newest):
         one.close()

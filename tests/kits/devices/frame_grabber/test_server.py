@@ -23,6 +23,14 @@ def server(camera, names):
         yield server
 
 
+def steps(server):
+    """Wait until it has been its time to grab, once from beginning to end."""
+    seen, step = [], server._publisher._step
+    server._publisher._step = lambda: (step(), seen.append(True))
+    wait_until(lambda: seen)
+    server._publisher._step = step
+
+
 def test_images_are_numbered_and_timed(server, camera, names):
     camera.timestamp = lambda: 12.5
     with yarpy.BufferedPort("/me", names=names) as port:
@@ -45,15 +53,15 @@ def test_headers_are_those_of_cpp(server, camera, names):
 
 
 def test_nothing_is_grabbed_while_nobody_looks(server, camera, names):
-    threading.Event().wait(0.05)
+    steps(server)
     assert camera.taken == 0
     with yarpy.BufferedPort("/me", names=names) as port:
         port.listen_to("/eye")
         port.read(HANG)
     wait_until(lambda: not server.images.outputs)
-    threading.Event().wait(0.02)  # what was begun is done
+    steps(server)  # what was begun is done
     taken = camera.taken
-    threading.Event().wait(0.05)
+    steps(server)
     assert camera.taken == taken
 
 

@@ -7,6 +7,7 @@ import socket
 import threading
 import time
 from contextlib import ExitStack
+from types import SimpleNamespace
 from urllib.parse import urlsplit
 
 import pytest
@@ -59,11 +60,13 @@ def test_who_sends_a_byte_now_and_then_does_not_hold_a_place(
 
 
 def test_a_slow_answer_is_no_late_request(view: View, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(limited_server, "VIEW_SECONDS", 0.2)
     told = view.source.told
 
     def slow() -> dict[str, object]:
-        time.sleep(0.6)
+        later = time.monotonic() + 2 * limited_server.VIEW_SECONDS
+        with monkeypatch.context() as patch:
+            patch.setattr(limited_server, "time", SimpleNamespace(monotonic=lambda: later))
+            view._server.service_actions()
         return told()
 
     monkeypatch.setattr(view.source, "told", slow)

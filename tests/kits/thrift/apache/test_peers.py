@@ -96,7 +96,8 @@ def test_a_server_of_thriftpy2(target: str) -> None:
 
 def test_a_server_that_does_not_answer_in_time(target: str) -> None:
     with (
-        apache().Test.connect(target, timeout=0.2) as client,
+        apache().Test.connect(target) as client,
         pytest.raises(yarpy.Timeout, match=r"fail: no answer within 0\.2 s"),
     ):
+        client.timeout = 0.2
         client.fail(9)

@@ -115,6 +115,9 @@ def test_a_failure_is_logged(here: None, own: str, caplog: pytest.LogCaptureFixt
 
     with ros2.Node(own, rmw="dds") as node:
         node.service(f"{own}/x", ADD, fail)
+        asker = node.client(f"{own}/x", ADD)
+        assert asker.wait(HANG)
         with pytest.raises(yarpy.Timeout):
-            node.call(f"{own}/x", ADD, [1, 2], timeout=1.0)
-        assert "over DDS nobody is told why: ZeroDivisionError: of the test" in caplog.text
+            asker.call([1, 2], timeout=0.01)
+        told = "over DDS nobody is told why: ZeroDivisionError: of the test"
+        wait_until(lambda: told in caplog.text, HANG, told)
