@@ -4,6 +4,7 @@ import asyncio
 import gc
 
 import pytest
+from support.wait import HANG
 
 import yarpy
 from yarpy import aio
@@ -40,7 +41,7 @@ def test_a_question_still_open_when_the_port_closes_gets_an_empty_answer():
         async with aio.Port("/aio/service") as service:
             client = aio.RpcClient("/aio/service")
             call = asyncio.create_task(client.call("anybody"))
-            message = await service.read(timeout=2)
+            message = await service.read(timeout=HANG)
             assert message.wants_reply
         assert await asyncio.wait_for(call, 10) == []
         await client.close()

@@ -26,7 +26,7 @@ def test_messages_are_awaited_and_iterated():
         ):
             await writer.connect("/aio/in")
             assert await writer.write(["hello", 1], yarpy.Stamp(1, 2.0)) == 1
-            message = await reader.read(timeout=2)
+            message = await reader.read(timeout=HANG)
             assert message.value == ["hello", 1]
             assert message.stamp == yarpy.Stamp(1, 2.0)
             for number in range(100):
@@ -48,7 +48,7 @@ def test_arrays_are_prepared():
             array = writer.prepare((200, 400))
             array[...] = 7
             await writer.write(array)
-            assert ((await reader.read(timeout=2)).value.array == 7).all()
+            assert ((await reader.read(timeout=HANG)).value.array == 7).all()
             assert not array.flags.writeable
 
     asyncio.run(main())
@@ -61,7 +61,7 @@ def test_latest_keeps_the_newest_and_counts_the_others():
                 await writer.connect("/aio/in")
                 for number in range(20):
                     await writer.write([number], wait=True)
-            assert (await reader.read(timeout=2)).value == [19]
+            assert (await reader.read(timeout=HANG)).value == [19]
             # Counted as past once its thread has met the end of the connection.
             await asyncio.to_thread(wait_until, lambda: reader.stats.past.inputs.replaced == 19)
 

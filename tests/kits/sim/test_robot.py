@@ -3,7 +3,7 @@
 from collections.abc import Iterator
 
 import pytest
-from support.wait import wait_until
+from support.wait import HANG, wait_until
 
 import yarpy
 from yarpy.kits.devices import ControlBoard
@@ -37,7 +37,7 @@ def test_ports(robot: Robot):
 
 
 def test_head(robot: Robot):
-    with ControlBoard("/icubSim/head", "/client") as head:
+    with ControlBoard("/icubSim/head", "/client", timeout=HANG) as head:
         assert head.axis_names[1] == "neck_roll"
         head.position_move([1], [45.0])
         wait_until(lambda: all(head.motion_done()), 20)

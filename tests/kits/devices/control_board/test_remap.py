@@ -4,6 +4,7 @@ from types import SimpleNamespace
 from typing import Any
 
 import pytest
+from support.wait import HANG
 
 from yarpy.kits.devices import ControlBoard, ControlBoardServer
 from yarpy.kits.devices.control_board.remap import remap, remap_remote
@@ -93,7 +94,7 @@ def test_remote_boards(names: LocalNames) -> None:
         ControlBoardServer("/head", head, names=names),
         remap_remote(["/torso", "/head"], ["eyes", "yaw"], "/mine", names=names) as board,
         ControlBoardServer("/both", board, names=names),
-        ControlBoard("/both", names=names) as both,
+        ControlBoard("/both", timeout=HANG, names=names) as both,
     ):
         assert both.axis_names == ["eyes", "yaw"] and both.encoders() == [1.0, 0.0]
         both.position_move("eyes", 4.5)

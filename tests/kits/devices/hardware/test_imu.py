@@ -15,7 +15,7 @@ if sys.platform == "win32":
 
 import tty
 
-from support.wait import wait_until
+from support.wait import HANG, wait_until
 
 from yarpy import Property, Timeout
 from yarpy.kits.devices import MultiSensor, MultiSensorServer
@@ -66,7 +66,7 @@ def test_on_ports(names: LocalNames) -> None:
         with (
             made,
             MultiSensorServer("/imu", made, 0.01, names=names),
-            MultiSensor("/imu", names=names) as client,
+            MultiSensor("/imu", timeout=HANG, names=names) as client,
         ):
             assert client.accelerometers() == {"waist": (0.0, 0.0, GRAVITY)}
             assert client.gyroscopes()["waist"][0] == -2000.0
