@@ -26,7 +26,7 @@ from yarpy.kits.record.capture import recorder as module
 from yarpy.kits.record.capture.disk_space import DiskSpace
 from yarpy.kits.record.capture.recorder import Recorder
 from yarpy.kits.record.dumper.part import Part
-from yarpy.platform import gathered_write
+from yarpy.platform import file_bytes
 
 
 class Disk(NamedTuple):
@@ -103,7 +103,7 @@ def test_what_was_flushed_can_be_read_meanwhile(tmp_path, names, out, compressio
 def test_a_slow_disk_costs_messages_and_holds_nobody_up(tmp_path, names, out, monkeypatch) -> None:
     """The disk does not take anything until it is let; writers go on."""
     free = threading.Event()
-    real = gathered_write.write
+    real = file_bytes.write
 
     def slow(file: io.FileIO, views: list[memoryview]) -> int:
         if not free.wait(HANG):
@@ -113,7 +113,7 @@ def test_a_slow_disk_costs_messages_and_holds_nobody_up(tmp_path, names, out, mo
     told: list[str] = []
     with Recorder("/out", path=tmp_path / "x", memory=100_000, names=names, tell=told.append) as r:
         assert out.wait_for_outputs(timeout=HANG)
-        monkeypatch.setattr(gathered_write, "write", slow)
+        monkeypatch.setattr(file_bytes, "write", slow)
         for n in range(100):
             assert out.write([n, bytes(5000)], yarpy.Stamp(n, 1.0), timeout=HANG) == 1
         wait_until(lambda: r.messages + r.lost == 100)
@@ -142,7 +142,7 @@ def test_a_disk_that_fails(tmp_path, names, out, monkeypatch) -> None:
         def full(file: io.FileIO, views: list[memoryview]) -> int:
             raise OSError(errno.ENOSPC, "No space left on device")
 
-        monkeypatch.setattr(gathered_write, "write", full)
+        monkeypatch.setattr(file_bytes, "write", full)
         out.write([2])
         assert recorder.ended.wait(HANG)
         monkeypatch.undo()
@@ -166,7 +166,7 @@ def test_what_one_of_both_has_is_not_lost(tmp_path, names, out, monkeypatch, fai
 
         with monkeypatch.context() as patch:
             if failing == "file":
-                patch.setattr(gathered_write, "write", full)
+                patch.setattr(file_bytes, "write", full)
             else:
                 patch.setattr(Part, "add", full)
             out.write([2])

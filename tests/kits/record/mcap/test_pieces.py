@@ -7,7 +7,7 @@ import pytest
 
 from yarpy.errors import LocalProtocolError
 from yarpy.kits.record.mcap.pieces import COMPRESSIONS, compressor, joined, write_all
-from yarpy.platform import gathered_write
+from yarpy.platform import file_bytes
 
 
 def test_small_pieces_are_joined_and_large_ones_are_not_copied() -> None:
@@ -19,8 +19,8 @@ def test_small_pieces_are_joined_and_large_ones_are_not_copied() -> None:
 
 def test_all_of_it_is_written(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """A system takes as much as it likes."""
-    real = gathered_write.write
-    monkeypatch.setattr(gathered_write, "write", lambda file, views: real(file, [views[0][:3]]))
+    real = file_bytes.write
+    monkeypatch.setattr(file_bytes, "write", lambda file, views: real(file, [views[0][:3]]))
     with io.FileIO(tmp_path / "x", "x") as file:
         assert write_all(file, [b"abcd", b"", b"efghijk"]) == 11
     assert (tmp_path / "x").read_bytes() == b"abcdefghijk"

@@ -13,7 +13,7 @@ from yarpy.kits.record.mcap import writer as module
 from yarpy.kits.record.mcap.pieces import COMPRESSIONS
 from yarpy.kits.record.mcap.reader import McapFile
 from yarpy.kits.record.mcap.writer import McapWriter
-from yarpy.platform import gathered_write
+from yarpy.platform import file_bytes
 
 
 @pytest.mark.parametrize("compression", COMPRESSIONS)
@@ -102,7 +102,7 @@ def test_a_write_that_fails_is_taken_back(tmp_path: Path, monkeypatch: pytest.Mo
         writer.flush()
         size = path.stat().st_size
         fill(writer, 4)
-        real = gathered_write.write
+        real = file_bytes.write
         calls = []
 
         def full(file: io.FileIO, views: list[memoryview]) -> int:
@@ -111,7 +111,7 @@ def test_a_write_that_fails_is_taken_back(tmp_path: Path, monkeypatch: pytest.Mo
                 raise OSError(errno.ENOSPC, "No space left on device")
             return calls[0]
 
-        monkeypatch.setattr(gathered_write, "write", full)
+        monkeypatch.setattr(file_bytes, "write", full)
         with pytest.raises(OSError, match="No space"):
             writer.flush()
         monkeypatch.undo()
@@ -130,7 +130,7 @@ def test_a_full_disk_at_the_beginning(tmp_path: Path, monkeypatch: pytest.Monkey
     def full(*_: object) -> int:
         raise OSError(errno.ENOSPC, "No space left on device")
 
-    monkeypatch.setattr(gathered_write, "write", full)
+    monkeypatch.setattr(file_bytes, "write", full)
     with pytest.raises(OSError, match=r"No space left on device: '.*x\.mcap'"):
         McapWriter(tmp_path / "x.mcap")
     assert not [*tmp_path.iterdir()]

@@ -9,7 +9,6 @@ is 25 bytes for a chunk.
 from __future__ import annotations
 
 import os
-import sys
 from array import array
 from collections.abc import Iterator
 from struct import Struct
@@ -49,6 +48,7 @@ from yarpy.kits.record.mcap.layout import (
     Damaged,
 )
 from yarpy.limit import RECORDED_CHUNK, RECORDED_CHUNKS, RECORDED_SUMMARY, RECORDED_TEXT
+from yarpy.platform import file_bytes
 
 _FOOTER: Final = HEAD.size + FOOTER_BODY.size + len(MAGIC)  # bytes at the end
 _CHUNK_START: Final = 4096  # bytes that the head of a chunk never exceeds
@@ -69,22 +69,10 @@ class Window:
         """Return `count` bytes from `place` on. Raises Damaged if the file ends before."""
         if place + count > self.size:
             raise Damaged(place, f"{count} bytes are announced, {self.size - place} are left")
-        data = _read(self._handle, place, count)
+        data = file_bytes.read_at(self._handle, count, place)
         if len(data) != count:
             raise Damaged(place + len(data), "the file has become shorter meanwhile")
         return data
-
-
-def _read(handle: int, place: int, count: int) -> bytes:
-    if sys.platform != "win32":
-        data = os.pread(handle, count, place)
-        while len(data) < count and (
-            more := os.pread(handle, count - len(data), place + len(data))
-        ):
-            data += more  # a system call gives at most 2 GiB
-        return data
-    os.lseek(handle, place, os.SEEK_SET)
-    return os.read(handle, count)
 
 
 class Index:

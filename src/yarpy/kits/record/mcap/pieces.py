@@ -11,7 +11,7 @@ from typing import Final
 
 from yarpy.errors import LocalProtocolError, UnknownPlugin
 from yarpy.kits.record.mcap.layout import Bytes
-from yarpy.platform import gathered_write
+from yarpy.platform import file_bytes
 
 COMPRESSIONS: Final = ("none", "lz4", "zstd")
 _SMALL: Final = 4096  # bytes: smaller pieces are joined first
@@ -39,7 +39,7 @@ def write_all(file: io.FileIO, parts: Sequence[Bytes]) -> int:
     views = [memoryview(part).cast("B") for part in parts if len(part)]
     total, at = sum(map(len, views)), 0
     while at < len(views):
-        done = gathered_write.write(file, views[at : at + gathered_write.MOST])
+        done = file_bytes.write(file, views[at : at + file_bytes.MOST])
         while at < len(views) and done >= len(views[at]):
             done -= len(views[at])
             at += 1
