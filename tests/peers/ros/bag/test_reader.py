@@ -110,7 +110,7 @@ def test_what_is_no_bag(tmp_path: Path, data: bytes, problem: str) -> None:
 def test_files_that_are_not_there(tmp_path: Path) -> None:
     with pytest.raises(FileNotFoundError):
         BagReader(tmp_path / "missing.bag")
-    with pytest.raises(IsADirectoryError):
+    with pytest.raises((IsADirectoryError, PermissionError)):  # the latter is Windows'
         BagReader(tmp_path)
 
 
@@ -124,7 +124,7 @@ def test_one_that_was_cut_off_says_what_to_do(ours: Path) -> None:
 def test_one_that_was_not_closed_says_what_to_do(tmp_path: Path) -> None:
     program = (
         "import os, sys; from yarpy.peers.ros import BagWriter; bag = BagWriter(sys.argv[1]);"
-        "bag.write('/a', 1, 1.0, 'std_msgs/Int32'); os._exit(0)"
+        "bag.write('/a', 'x' * 2**21, 1.0, 'std_msgs/String'); os._exit(0)"
     )
     path = tmp_path / "open.bag"
     subprocess.run([sys.executable, "-c", program, str(path)], check=True, timeout=60)

@@ -38,7 +38,7 @@ from yarpy.peers.ros.message.library import Library
         ("i32s", [[1], [1, 2]], TypeError, "i32s: expected int32 numbers"),
         ("u8s", [256], OverflowError, "u8s: a number that does not fit in uint8"),
         ("u16s", b"ab", TypeError, "u16s: expected uint16 numbers, got bytes"),
-        ("flags", [2], TypeError, "flags: expected bool numbers, got int64 numbers"),
+        ("flags", [2], TypeError, "flags: expected bool numbers, got int"),
         ("inner", 3, TypeError, "inner: expected test/Inner, got 3"),
         ("pair", [None, None], TypeError, "pair[0]: expected test/Inner, got None"),
         ("stamps", ["1"], TypeError, "stamps[0]: expected time or seconds, got '1'"),

@@ -1,5 +1,6 @@
 """Where texts come from: folders of every shape, ROS_PACKAGE_PATH, rosbags, yarpy's own."""
 
+import os
 from pathlib import Path
 
 import pytest
@@ -45,7 +46,7 @@ def test_packages_lie_anywhere_below_a_root(tmp_path: Path) -> None:
     write(tmp_path / "direct/msg/B.msg", "int8 b")
     write(tmp_path / "share/installed/msg/C.msg", "int8 c")
     environment = {
-        "ROS_PACKAGE_PATH": f"{tmp_path / 'nowhere'}:{tmp_path}",
+        "ROS_PACKAGE_PATH": f"{tmp_path / 'nowhere'}{os.pathsep}{tmp_path}",
         "CMAKE_PREFIX_PATH": str(tmp_path),
     }
     found = Packages.of(environment)

@@ -79,6 +79,7 @@ def test_types_of_one_name(library: Library) -> None:
 
 @pytest.mark.timeout(300)  # mypy may begin without its cache
 def test_type_checkers_understand_the_stubs(library: Library, tmp_path: Path) -> None:
+    pytest.importorskip("mypy")
     types = [library.message("test/Every"), library.message("sensor_msgs/Image")]
     add = library.service_of("p/Add", "int64 a\n---\nint64 sum\n")
     (tmp_path / "msgs.py").write_text(python([*types, add]))
