@@ -1,11 +1,14 @@
 """What only this computer and the network can tell of an application."""
 
+import sys
+
 import yarpy
 from yarpy.kits.launch.application.application import Application, Connection, Module
 from yarpy.kits.launch.application.checking import checked
 from yarpy.kits.launch.document.problem import Where
 
 HERE = Where("a", 1, 1)
+PYTHON = sys.executable
 
 
 def said(names, *modules: Module, connections: tuple[Connection, ...] = ()) -> list[str]:
@@ -14,8 +17,8 @@ def said(names, *modules: Module, connections: tuple[Connection, ...] = ()) -> l
 
 
 def test_programs_and_folders(network: yarpy.LocalNames, tmp_path) -> None:
-    assert said(network, Module("a", "sleep"), Module("b", "sh", workdir=str(tmp_path))) == []
-    assert said(network, Module("a", "slep"), Module("b", "sh", workdir="/no/such")) == [
+    assert said(network, Module("a", PYTHON), Module("b", PYTHON, workdir=str(tmp_path))) == []
+    assert said(network, Module("a", "slep"), Module("b", PYTHON, workdir="/no/such")) == [
         'error: "a": there is no program "slep" on the PATH',
         'error: the folder "/no/such" is not there',
     ]

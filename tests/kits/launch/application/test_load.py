@@ -62,7 +62,7 @@ def test_many_programs_of_one_name(tmp_path: Path) -> None:
 
 
 def said(path: Path) -> list[str]:
-    return [str(one).removeprefix(f"{path.parent}/") for one in load(path).problems]
+    return [str(one).removeprefix(f"{path.parent}{os.sep}") for one in load(path).problems]
 
 
 @pytest.mark.parametrize("name", ["a.toml", "a.xml"])

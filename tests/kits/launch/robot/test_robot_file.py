@@ -1,5 +1,6 @@
 """Files of robots: what each word means, and what is told of wrong ones."""
 
+import os
 from pathlib import Path
 
 import pytest
@@ -13,7 +14,7 @@ from .conftest import DOCTYPE, Write
 
 def told(path: Path) -> list[str]:
     found = load(path)
-    return [str(one).replace(f"{path.parent}/", "") for one in found.problems]
+    return [str(one).replace(f"{path.parent}{os.sep}", "") for one in found.problems]
 
 
 def test_devices_with_parameters_of_all_kinds(write: Write) -> None:

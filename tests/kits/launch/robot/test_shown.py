@@ -1,5 +1,7 @@
 """The merged view: each parameter with its origin."""
 
+import os
+
 from yarpy import Property
 from yarpy.kits.launch.robot.robot_file import load
 from yarpy.kits.launch.robot.shown import lines
@@ -18,7 +20,8 @@ def test_each_line_says_where_it_is_from(write: Write) -> None:
         "</device>"
     )
     found = [
-        line.replace(f"{path.parent}/", "") for line in lines(load(path, given=Property(ex=2)))
+        line.replace(f"{path.parent}{os.sep}", "")
+        for line in lines(load(path, given=Property(ex=2)))
     ]
     assert found == [
         "robot r, ports /r",
