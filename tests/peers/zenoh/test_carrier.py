@@ -12,6 +12,9 @@ from yarpy.data import codec
 from yarpy.errors import LocalProtocolError
 from yarpy.link.begin.handshake import find_carrier
 from yarpy.peers.zenoh.carrier import (
+    DELETE,
+    GONE,
+    HERE,
     Asker,
     Incoming,
     Outgoing,
@@ -188,11 +191,23 @@ def test_an_envelope_goes_and_comes() -> None:
         assert (end.result.value, end.result.envelope) == ([1], envelope)
 
 
-def test_a_delete_is_told_by_a_vocab() -> None:
+@pytest.mark.parametrize("event", [DELETE, HERE, GONE])
+def test_what_happens_at_a_key_is_told_by_a_vocab(event: str) -> None:
     carrier, end = opened("zenoh+sub+delete")
     end.begin(carrier.decode(end.stream))
-    end.feed(Incoming(b"", place="robot/arm", deleted=True))
-    assert (end.result.value, end.result.source) == ([yarpy.Vocab("delete")], "/zenoh://robot/arm")
+    end.feed(Incoming(b"", place="robot/arm", event=event))
+    assert (end.result.value, end.result.source) == ([yarpy.Vocab(event)], "/zenoh://robot/arm")
+
+
+@pytest.mark.parametrize("spec", ["zenoh+delete", "zenoh+delete+raw"])
+def test_the_vocab_is_a_delete_where_it_is_asked_for(spec: str) -> None:
+    carrier, end = opened(spec)
+    for value in (yarpy.Vocab("delete"), [yarpy.Vocab("delete")], yarpy.Bottle(["delete"]), [1]):
+        carrier.encode(end.stream, Packet(value))
+    assert [item.deletes for item in said(end)] == [True, True, False, False]
+    carrier, end = opened("zenoh")
+    carrier.encode(end.stream, Packet([yarpy.Vocab("delete")]))
+    assert said(end) == [Outgoing(b'["dele"]', "application/json")]
 
 
 @pytest.mark.parametrize(
@@ -202,8 +217,9 @@ def test_a_delete_is_told_by_a_vocab() -> None:
         ("zenoh+sub+priority.DATA", "for ports that put"),
         ("zenoh+srv+block", "for ports that put"),
         ("zenoh+sub+express", "for ports that put"),
-        ("zenoh+delete", "for ports that subscribe"),
-        ("zenoh+sub+srv+delete", "for ports that subscribe"),
+        ("zenoh+sub+srv+delete", "for messages"),
+        ("zenoh+srv+timestamp", "for messages"),
+        ("zenoh+srv+liveliness", "not for ports that ask"),
     ],
 )
 def test_additions_that_do_not_fit(spec: str, why: str) -> None:

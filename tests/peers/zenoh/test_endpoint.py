@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import logging
+import time
 from queue import Queue
 from typing import Any
 
@@ -237,3 +238,98 @@ def test_a_port_puts_with_a_priority(client: Any) -> None:
         assert sample.priority == zenoh.Priority.REAL_TIME
         assert sample.congestion_control == zenoh.CongestionControl.BLOCK
         assert sample.express
+
+
+def test_a_port_deletes(client: Any) -> None:
+    heard = Queue[Any]()
+    client.declare_subscriber("robot/place", heard.put)
+    with yarpy.Port("/out") as out:
+        out.connect("zenoh+delete+block://robot/place")
+        wait_until(lambda: out.write(1) and not heard.empty())
+        out.write(yarpy.Vocab("delete"), stamp="7 1.5")
+        while (sample := heard.get(timeout=HANG)).kind == zenoh.SampleKind.PUT:
+            pass
+        assert (str(sample.key_expr), sample.attachment.to_string()) == ("robot/place", "7 1.5")
+
+
+def test_timestamps_go_both_ways(client: Any) -> None:
+    heard = Queue[Any]()
+    client.declare_subscriber("robot/when", heard.put)
+    before = time.time()
+    with yarpy.Port("/out") as out, yarpy.BufferedPort("/in", strict=True) as reader:
+        out.connect("zenoh+timestamp://robot/when")
+        wait_until(lambda: out.write(1) and not heard.empty())
+        assert before - 1 < heard.get().timestamp.get_time().timestamp() < time.time() + 1
+        reader.connect("zenoh+sub+timestamp://robot/then")
+        waits = zenoh.CongestionControl.BLOCK  # where there is no room
+        publisher = client.declare_publisher("robot/then", congestion_control=waits)
+        wait_until(lambda: publisher.matching_status.matching)
+        when = client.new_timestamp()
+        publisher.put("[1]", timestamp=when)
+        publisher.put("[2]", timestamp=when, attachment="note")
+        first, second = (reader.read(timeout=HANG) for _ in range(2))
+        assert first.stamp.time == pytest.approx(when.get_time().timestamp(), abs=1e-6)
+        assert second.envelope == "note"
+
+
+def test_a_port_has_a_token_of_liveliness(client: Any) -> None:
+    tokens = client.liveliness()
+    seen = Queue[Any]()
+    tokens.declare_subscriber("robot/live/*", seen.put)
+    with yarpy.Port("/out") as out, yarpy.RpcServer("/server", lambda message: ["ok"]) as server:
+        for port, target in ((out, "zenoh+liveliness"), (server, "zenoh+srv+liveliness")):
+            key = f"robot/live/{'put' if port is out else 'asked'}"
+            (port.connect if port is out else port.listen_to)(f"{target}://{key}")
+            sample = seen.get(timeout=HANG)
+            assert (str(sample.key_expr), sample.kind) == (key, zenoh.SampleKind.PUT)
+        found = {str(reply.ok.key_expr) for reply in tokens.get("robot/live/*")}
+        assert found == {"robot/live/put", "robot/live/asked"}
+    gone = [seen.get(timeout=HANG) for _ in range(2)]
+    assert [sample.kind for sample in gone] == [zenoh.SampleKind.DELETE] * 2
+
+
+def test_a_port_hears_tokens_of_liveliness(client: Any) -> None:
+    before = client.liveliness().declare_token("robot/alive/r1")
+    with yarpy.BufferedPort("/in", strict=True) as reader:
+        reader.connect("zenoh+sub+liveliness://robot/alive/*")
+        message = reader.read(timeout=HANG)
+        assert (message.value, message.source) == (
+            [yarpy.Vocab("here")],
+            "/zenoh://robot/alive/r1",
+        )
+        after = client.liveliness().declare_token("robot/alive/r2")
+        assert reader.read(timeout=HANG).source == "/zenoh://robot/alive/r2"
+        for token, name in ((before, "r1"), (after, "r2")):
+            token.undeclare()
+            message = reader.read(timeout=HANG)
+            assert (message.value, message.source) == (
+                [yarpy.Vocab("gone")],
+                f"/zenoh://robot/alive/{name}",
+            )
+
+
+def test_what_a_plain_program_says_of_a_sample_keeps_nothing_out(client: Any) -> None:
+    """Priority, congestion control, express and reliability are the business of who puts."""
+    with yarpy.BufferedPort("/in", strict=True) as reader:
+        reader.connect("zenoh+sub://robot/said")
+        rows = [
+            *({"priority": each} for each in (zenoh.Priority.REAL_TIME, zenoh.Priority.BACKGROUND)),
+            {"express": True},
+            {"reliability": zenoh.Reliability.BEST_EFFORT},
+        ]
+        for number, row in enumerate(rows):
+            waits = zenoh.CongestionControl.BLOCK
+            publisher = client.declare_publisher("robot/said", congestion_control=waits, **row)
+            wait_until(lambda publisher=publisher: publisher.matching_status.matching)  # type: ignore[misc]
+            publisher.put(str(number))
+            assert reader.read(timeout=HANG).value == number
+            publisher.undeclare()
+
+
+def test_a_querier_asks_a_port(client: Any) -> None:
+    with yarpy.RpcServer("/server", lambda message: ["ok", *message.value]) as server:
+        server.listen_to("zenoh+srv://robot/queried")
+        querier = client.declare_querier("robot/queried")
+        wait_until(lambda: querier.matching_status.matching)
+        (reply,) = querier.get(payload="[1]", attachment="7 1.5")
+        assert reply.ok.payload.to_string() == '["ok", 1]'

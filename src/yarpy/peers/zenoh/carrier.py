@@ -6,12 +6,16 @@
     yarpy connect zenoh+srv://robot/arm /server  the port answers such questions: a queryable
 
     zenoh+raw://...                              payloads are YARP's own spelling
-    zenoh+sub+delete://...                       a DELETE is a message, too: [delete]
+    zenoh+delete://..., zenoh+sub+delete://...   the message [delete] is a DELETE, both ways
+    zenoh+sub+liveliness://...                   tokens that come and go: [here], [gone]
+    zenoh+liveliness://...                       the connection has such a token, at its key
+    zenoh+timestamp://...                        what is put says when; with +sub that is heard
     zenoh+priority.REAL_TIME+block+express://... what is put, as publishers of Zenoh say it
 
 Rules: those of `hosted`; `yarpy.zenoh` has the endpoints. What came as text or as bytes, by its
 encoding, is that; `payload` says what any other payload holds. An envelope is the attachment, both
-ways. A get without a payload asks with its parameters; the source has those of each.
+ways; where there is none, and `+timestamp` asks for it, that is the time. A get without a payload
+asks with its parameters; the source has those of each.
 """
 
 from __future__ import annotations
@@ -35,6 +39,10 @@ from yarpy.wire.stream import Buffer, ByteStream
 
 RAW: Final = "raw"
 DELETE: Final = "delete"
+LIVELINESS: Final = "liveliness"
+TIMESTAMP: Final = "timestamp"
+HERE: Final = "here"  # of a token of liveliness
+GONE: Final = "gone"
 BLOCK: Final = "block"  # wait for room on the way instead of dropping
 EXPRESS: Final = "express"  # do not wait for more that could go in one packet
 #: what a message of Zenoh can have, the most urgent first
@@ -56,13 +64,15 @@ _UNTOLD: Final = (bytes, bytearray, memoryview, Encoded)  # the last holds anyth
 @dataclass(slots=True)
 class Outgoing:
     """A message, question or answer that goes. `encoding`: its type, as Zenoh writes it. `to`: what
-    it answers. `failed`: it says why there is no answer. `attachment`: what goes beside it."""
+    it answers. `failed`: it says why there is no answer. `attachment`: what goes beside it.
+    `deletes`: it is a DELETE."""
 
     payload: Buffer
     encoding: str = BYTES
     to: Any = None
     failed: bool = False
     attachment: bytes = b""
+    deletes: bool = False
 
     @property
     def size(self) -> int:
@@ -73,9 +83,9 @@ class Outgoing:
 class Incoming:
     """A message, question or answer that came. `asked`: the question, to be answered. `failure`:
     why there is no answer, `raised`: by which kind of exception. `place`: the key that it was put
-    at; of a question with parameters, its selector. `attachment`: what came beside it. `deleted`:
-    there is nothing at that key any more. `encoding`: its type, as Zenoh writes it. `parameters`:
-    of a question without a payload."""
+    at; of a question with parameters, its selector. `attachment`: what came beside it. `event`:
+    what happened at that key instead, DELETE, HERE or GONE. `encoding`: its type, as Zenoh writes
+    it. `parameters`: of a question without a payload."""
 
     payload: Buffer
     asked: Any = None
@@ -83,7 +93,7 @@ class Incoming:
     raised: str = ""
     place: str = ""
     attachment: bytes = b""
-    deleted: bool = False
+    event: str = ""
     encoding: str = BYTES
     parameters: list[tuple[str, str]] | None = None
 
@@ -97,11 +107,15 @@ class Zenoh(Hosted):
 
     name = "zenoh"
     over = "zenoh"
-    words = (SERVICE, LISTENS, RAW, DELETE, "priority.NAME", BLOCK, EXPRESS)
+    words = (
+        *(SERVICE, LISTENS, RAW, DELETE, LIVELINESS, TIMESTAMP),
+        *("priority.NAME", BLOCK, EXPRESS),
+    )
 
     def __init__(self, route: Route) -> None:
         super().__init__(route)
         self.raw = RAW in route.spec.tokens
+        self.deletes = DELETE in route.spec.tokens
 
     @classmethod
     def of(cls, spec: CarrierSpec) -> type[Carrier]:
@@ -110,12 +124,16 @@ class Zenoh(Hosted):
             raise LocalProtocolError(
                 f"+priority.{readable(priority[:20])}: Zenoh has {', '.join(PRIORITIES)}"
             )
-        reads, puts = LISTENS in spec.tokens, {"priority", BLOCK, EXPRESS}
-        said = puts & {token.partition(".")[0] for token in spec.tokens}
-        if said and (reads or SERVICE in spec.tokens):
+        reads, service = LISTENS in spec.tokens, SERVICE in spec.tokens
+        words = {token.partition(".")[0] for token in spec.tokens}
+        said = words & {"priority", BLOCK, EXPRESS}
+        if said and (reads or service):
             raise LocalProtocolError(f"+{min(said)} is for ports that put: zenoh://KEY")
-        if DELETE in spec.tokens and (not reads or SERVICE in spec.tokens):
-            raise LocalProtocolError("+delete is for ports that subscribe: zenoh+sub://KEY")
+        said = words & {DELETE, TIMESTAMP}
+        if said and service:
+            raise LocalProtocolError(f"+{min(said)} is for messages: zenoh://KEY, zenoh+sub://KEY")
+        if LIVELINESS in words and service and not reads:
+            raise LocalProtocolError("+liveliness is not for ports that ask: zenoh+srv+sub://KEY")
         return super().of(spec)
 
     @classmethod
@@ -135,6 +153,8 @@ class Zenoh(Hosted):
         self.write_object(stream, self._said(packet))
 
     def _said(self, packet: Packet) -> Outgoing:
+        if self.deletes and _is_deletion(packet.value):
+            return Outgoing(b"", attachment=packet.envelope, deletes=True)
         if self.raw:
             return Outgoing(_joined(packet.blocks), attachment=packet.envelope)
         payload = to_payload(packet)
@@ -142,8 +162,8 @@ class Zenoh(Hosted):
         return Outgoing(payload, encoding, attachment=packet.envelope)
 
     def _heard(self, key: str, came: Incoming) -> Message:
-        if came.deleted:
-            return Message(key, b"".join(codec.encode([Vocab(DELETE)])))
+        if came.event:
+            return Message(key, b"".join(codec.encode([Vocab(came.event)])))
         if came.parameters is not None:
             asked = [[name, value_of(value.encode())] for name, value in came.parameters]
             message = Message(key, b"".join(codec.encode(asked)))
@@ -236,6 +256,12 @@ def encoding_of(payload: Buffer, value: object) -> str:
     if isinstance(value, list | tuple) and len(value) == 1:
         value = value[0]
     return BYTES if isinstance(value, _UNTOLD) else JSON
+
+
+def _is_deletion(value: object) -> bool:
+    if isinstance(value, list | tuple) and len(value) == 1:
+        value = value[0]
+    return isinstance(value, Vocab) and value == Vocab(DELETE)
 
 
 def _joined(blocks: list[Buffer] | tuple[Buffer, ...]) -> Buffer:

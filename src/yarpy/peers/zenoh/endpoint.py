@@ -14,7 +14,18 @@ from typing import Any, Final
 
 from yarpy.limit import ZENOH_ATTACHMENT, ZENOH_PARAMETERS
 from yarpy.log import logger, readable
-from yarpy.peers.zenoh.carrier import BLOCK, DELETE, EXPRESS, TEXT, Incoming, Outgoing
+from yarpy.peers.zenoh.carrier import (
+    BLOCK,
+    DELETE,
+    EXPRESS,
+    GONE,
+    HERE,
+    LIVELINESS,
+    TEXT,
+    TIMESTAMP,
+    Incoming,
+    Outgoing,
+)
 from yarpy.peers.zenoh.exchange import undeclare
 from yarpy.peers.zenoh.library import CALLS, load
 from yarpy.peers.zenoh.transport import SharedSession
@@ -45,6 +56,11 @@ class Endpoint(Inbox):
     def begin(self) -> None:
         """Declare what is needed."""
 
+    def _live(self) -> None:
+        """Have a token of liveliness, if that is asked for."""
+        if LIVELINESS in self._spec.tokens:
+            self._declared.append(self._session.liveliness().declare_token(self.name))
+
     def ended(self) -> bool:
         return self._closed or bool(self._session.is_closed())
 
@@ -73,29 +89,48 @@ class Publisher(Endpoint):
         if EXPRESS in tokens:
             said["express"] = True
         self._declared.append(self._session.declare_publisher(self.name, **said))
+        self._live()
 
     def give(self, item: Outgoing) -> None:
+        publisher, beside = self._declared[0], item.attachment or None
+        when = self._session.new_timestamp() if TIMESTAMP in self._spec.tokens else None
         with CALLS:
-            self._declared[0].put(
-                bytes(item.payload), encoding=item.encoding, attachment=item.attachment or None
-            )
+            if item.deletes:
+                publisher.delete(attachment=beside, timestamp=when)
+            else:
+                body = bytes(item.payload)
+                publisher.put(body, encoding=item.encoding, attachment=beside, timestamp=when)
 
 
 class Subscriber(Endpoint):
     """Takes messages from its keys."""
 
     def begin(self) -> None:
-        hear = load().handlers.Callback(self._heard, indirect=False)
-        self._declared.append(self._session.declare_subscriber(self.name, hear))
+        of = self._session
+        if LIVELINESS in self._spec.tokens:
+            hear = load().handlers.Callback(self._live_heard, indirect=False)
+            declared = of.liveliness().declare_subscriber(self.name, hear, history=True)
+        else:
+            hear = load().handlers.Callback(self._heard, indirect=False)
+            declared = of.declare_subscriber(self.name, hear)
+        self._declared.append(declared)
 
     def _heard(self, sample: Any) -> None:
-        place = str(sample.key_expr)
+        said = Incoming(b"", place=str(sample.key_expr), attachment=_attached(sample))
+        when = sample.timestamp
+        if TIMESTAMP in self._spec.tokens and when is not None and not said.attachment:
+            said.attachment = b"0 %.6f" % when.get_time().timestamp()
         if sample.kind == load().SampleKind.PUT:
-            beside, form = _attached(sample), str(sample.encoding)
-            body = sample.payload.to_bytes()
-            self.put(Incoming(body, place=place, attachment=beside, encoding=form), KEPT)
+            said.payload, said.encoding = sample.payload.to_bytes(), str(sample.encoding)
         elif DELETE in self._spec.tokens:
-            self.put(Incoming(b"", place=place, deleted=True), KEPT)
+            said.event = DELETE
+        else:
+            return
+        self.put(said, KEPT)
+
+    def _live_heard(self, sample: Any) -> None:
+        event = HERE if sample.kind == load().SampleKind.PUT else GONE
+        self.put(Incoming(b"", place=str(sample.key_expr), event=event), KEPT)
 
 
 def _attached(said: Any) -> bytes:
@@ -155,6 +190,7 @@ class Server(Endpoint):
     def begin(self) -> None:
         hear = load().handlers.Callback(self._heard, indirect=False)
         self._declared.append(self._session.declare_queryable(self.name, hear, complete=True))
+        self._live()
 
     def _heard(self, query: Any) -> None:
         if self.waiting >= MOST_QUESTIONS:
