@@ -4,7 +4,8 @@ closes or interrupts a port wakes the calls that are blocked in it.
 Rules: the methods are found by looking at the classes, so none that is new is left out: it belongs
 into CALLS, with what it is called, or into AT_ONCE, if it never waits for anybody. Those who are
 silent: a listener that accepts and says nothing, a name server that does (as one that was stopped),
-and an address that swallows what is sent there, as a computer that is switched off.
+and an address that swallows what is sent there, as a computer that is switched off. A timer of the
+program interrupts the main thread meanwhile, which makes no wait longer.
 """
 
 from __future__ import annotations
@@ -18,6 +19,7 @@ from contextlib import ExitStack, suppress
 from typing import Any, Self
 
 import pytest
+from support.timer import beating
 
 import yarpy
 from yarpy.names.default import DEFAULT
@@ -78,6 +80,12 @@ OPENING: dict[str, Call] = {
     "RpcClient": lambda timeout: yarpy.RpcClient(name="/new", timeout=timeout),
 }
 FUNCTIONS_AT_ONCE = {"from_json", "realtime", "to_json"}
+
+
+@pytest.fixture(autouse=True)
+def timer() -> Iterator[None]:
+    with beating():
+        yield
 
 
 @pytest.fixture

@@ -11,6 +11,7 @@ from contextlib import closing
 from pathlib import Path
 
 import pytest
+from support.timer import beating
 from support.tls import prepare
 
 from yarpy.config.authority import make
@@ -116,8 +117,8 @@ def test_end_is_seen(ends: tuple[TlsTransport, TlsTransport]) -> None:
 
 
 def test_waiting_has_a_limit(ends: tuple[TlsTransport, TlsTransport]) -> None:
-    ends[0].limit_waiting(0.05)
-    with pytest.raises(BlockingIOError):
+    ends[0].limit_waiting(0.3)
+    with beating(), pytest.raises(BlockingIOError):
         ends[0].recv_into(memoryview(bytearray(4)))
     ends[0].limit_waiting(None)
     threading.Timer(0.05, ends[0].interrupt).start()

@@ -8,6 +8,9 @@ What a call into the system returns is taken from a `map` by a `for` into an att
 step for Python, which looks for signals only behind calls. (Compiled, other ways of unpacking hide
 what the call raises.) So an exception out of a signal handler finds
 bytes either not moved or noted.
+
+Deadlines are waited for by poll: a receive timeout of the kernel (SO_RCVTIMEO) begins anew behind
+each signal, so that a program with a timer would wait for ever.
 """
 
 from __future__ import annotations
@@ -47,6 +50,7 @@ class ByteDriver(Driver):
         system = transport if isinstance(transport, SocketTransport) else None
         self._recv = None if system is None else system.recv_call
         self._send = system.send_call if system is not None and MSG_DONTWAIT else None
+        self._arms = self._recv is None or not MSG_DONTWAIT
         # Whether polling may beat sleeping.
         self.eager = cores() > 1 and transport.eager
         self._looks = False  # poll for the next bytes instead of sleeping
@@ -143,7 +147,9 @@ class ByteDriver(Driver):
         try:
             if self._came >= 0:
                 pass
-            elif deadline is not None and not self._limit(deadline):
+            elif deadline is not None and not (
+                self._limit(deadline) if self._arms else time.monotonic() < deadline
+            ):
                 raise BlockingIOError
             else:
                 # `get_buffer` for nearly every message, spelled out, as is `buffer_updated` below.
@@ -154,7 +160,9 @@ class ByteDriver(Driver):
                     buffer = stream.get_buffer()
                 if not (self._looks and (self._try(buffer) or self._look(buffer))):
                     receive = self._recv or self.transport.recv_into
-                    if self._skip:
+                    if deadline is not None and not self._arms:
+                        self._await(buffer, deadline)
+                    elif self._skip:
                         self._skip -= 1
                         for self._came in map(receive, (buffer,)):  # the kernel wakes us
                             pass
@@ -183,6 +191,21 @@ class ByteDriver(Driver):
         else:
             stream.feed_eof()
         self._came = NONE
+
+    def _await(self, buffer: memoryview, deadline: float) -> None:
+        """Wait until bytes come, or the end, and take them. Raises BlockingIOError when it is too
+        late for that."""
+        started = time.perf_counter()
+        while True:
+            left = deadline - time.monotonic()
+            if self.transport.wait_readable(max(0.0, left)) and self._try(buffer):
+                break
+            if left <= 0.0:
+                raise BlockingIOError
+        if self._skip:
+            self._skip -= 1
+        elif self.eager and time.perf_counter() - started < SOON:
+            self._looks = True
 
     def try_fill(self) -> bool:
         try:

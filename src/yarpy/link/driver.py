@@ -45,6 +45,8 @@ class Driver:
         # Of these, what did not go through the transport; the window resets it.
         self.aside = 0
         self._part = False  # the wait ends before its deadline: there is a second one
+        # Deadlines limit the transport's own waits, instead of being waited for beside it.
+        self._arms = True
 
     def run(
         self, steps: Steps[T], deadline: float | None = None, incoming: Incoming | None = None
@@ -92,7 +94,7 @@ class Driver:
             raise
         finally:
             if deadline is not None:
-                self.transport.limit_waiting(None)
+                self.disarm()
             if incoming is not None:
                 if incoming.since and deadline is None:
                     self.transport.limit_waiting(None, sends=False)
@@ -173,15 +175,22 @@ class Driver:
         """As `fill`; return False if `until` comes first, or the port's end."""
         try:
             while wait := self.ending.slice(until):
-                self.transport.limit_waiting(wait, sends=False)
+                if self._arms:
+                    self.transport.limit_waiting(wait, sends=False)
                 try:
-                    self.fill()
+                    self.fill(None if self._arms else time.monotonic() + wait)
                 except Timeout:
                     continue
                 return True
             return False
         finally:
-            self.transport.limit_waiting(None, sends=False)
+            if self._arms:
+                self.transport.limit_waiting(None, sends=False)
+
+    def disarm(self) -> None:
+        """Take back the limit that deadlines have put on the transport's waits."""
+        if self._arms:
+            self.transport.limit_waiting(None)
 
     def close(self) -> list[object]:
         """Close the transport; return the objects that had come, and that nobody has read."""

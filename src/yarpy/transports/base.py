@@ -196,7 +196,7 @@ class SocketTransport(Answerable):
         #: exception out of a signal handler comes before or after. None: they do more than that.
         self.recv_call: Callable[..., int] | None = sock.recv_into if MSG_DONTWAIT else None
         self.send_call: Callable[..., int] | None = sock.send
-        self._poll: Any = None  # asks whether there is something to be read
+        self._poll: Any = None  # tells when there is something to be read
 
     @property
     def local(self) -> Address:
@@ -272,7 +272,15 @@ class SocketTransport(Answerable):
         number = self.sock.fileno()
         if number < 0:
             return True  # closed, as reading tells
-        return has_input(number, seconds)
+        if _POLL is None:
+            return has_input(number, seconds)
+        poll, self._poll = self._poll, None  # it serves one thread at a time
+        if poll is None:
+            poll = _POLL()
+            poll.register(number, _READABLE)
+        found = poll.poll(max(0.0, seconds) * 1000)
+        self._poll = poll
+        return bool(found)
 
     def limit_waiting(self, seconds: float | None, sends: bool = True) -> None:
         if self._polling is not None:

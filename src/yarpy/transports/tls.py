@@ -71,6 +71,8 @@ class TlsTransport(TcpTransport):
                 if left <= 0:
                     raise BlockingIOError("the peer is silent")
                 self.limit_waiting(left)
+                if not self.wait_readable(left):
+                    raise BlockingIOError("the peer is silent")
                 if not self._take(super().recv_into(self._raw)):
                     raise ConnectionResetError("the peer hung up instead of speaking TLS")
         finally:
@@ -111,14 +113,16 @@ class TlsTransport(TcpTransport):
             try:
                 while (count := self._decrypted(view, came[0])) < 0:
                     came = []
+                    limit = self._timeout
+                    if limit is not None:  # signals must not make it longer, as they do inside
+                        left = due - time.monotonic() if due else limit
+                        if not self.wait_readable(left):
+                            raise BlockingIOError("the peer is slow")
                     came.extend(map(self._receive, (self._raw,)))
                     if not came[0]:
                         return 0
-                    if self._timeout is not None:  # a record may come byte by byte
-                        now = time.monotonic()
-                        due = due or now + self._timeout
-                        if now > due:
-                            raise BlockingIOError("the peer is slow")
+                    if limit is not None and not due:  # a record may come byte by byte
+                        due = time.monotonic() + limit
             except OSError:
                 raise
             except BaseException:

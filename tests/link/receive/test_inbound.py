@@ -15,7 +15,7 @@ from support.capture import load_capture
 from support.inbound import Owner, linked, message, served
 from support.lasted import lasted
 from support.transport import scripted
-from support.wait import wait_until
+from support.wait import HANG, wait_until
 
 from yarpy.carriers.base import Limits
 from yarpy.carriers.own.tcp import Tcp
@@ -253,6 +253,37 @@ def test_nobody_else_writes_while_a_question_is_open() -> None:
             near.recv(1)
         link.close()
         assert near.recv(1) == b""
+
+
+@pytest.mark.parametrize("main", [True, False])
+def test_a_timed_read_ends_also_where_a_timer_interrupts_it(
+    main: bool, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Signals come to the main thread, and a limit of the system begins anew behind each."""
+    monkeypatch.setattr("yarpy.link.receive.turn.AWAY", HANG)
+    with linked() as (near, link, _):
+        driver, limits = link.receiver.driver, list[float | None]()
+        fill = driver.fill
+
+        def noted(deadline: float | None = None) -> None:
+            limits.append(deadline)
+            fill(deadline)
+
+        def wait() -> None:
+            assert read(link, time.monotonic() + 60) is None
+            assert link.turn.lease is None or link.turn.lease.over, "nothing came for a while"
+
+        thread = threading.Thread(target=wait)
+        link.turn.ask(threading.get_ident())
+        near.sendall(message([1]))
+        wait_until(lambda: link.turn.leased)
+        monkeypatch.setattr(driver, "fill", noted)
+        if main:
+            wait()
+        else:
+            thread.start()
+            thread.join(HANG)
+        assert bool(limits[0]) is main
 
 
 def test_borrower_that_wants_the_newest_gets_the_last_of_those_that_are_there() -> None:

@@ -314,8 +314,11 @@ class Inbound:
         waiting.
         """
         turn, receiver = self.turn, self.receiver
-        if deadline is not None and deadline - time.monotonic() >= SILENCE:
-            deadline = None
+        lasts = deadline is None
+        if deadline is not None and (now := time.monotonic()) + SILENCE <= deadline:
+            # Signals come to the main thread, and make the limit of the lease longer.
+            main = threading.current_thread() is threading.main_thread()
+            lasts, deadline = True, now + SILENCE if main else None
         try:
             if receiver.held is None:
                 if receiver.question is not None:
@@ -347,7 +350,7 @@ class Inbound:
                     return self._newest()
             return message
         except Timeout:
-            if deadline is None:
+            if lasts:
                 turn.end()
             else:
                 receiver.limit(SILENCE)

@@ -71,6 +71,6 @@ def exchange(
         if sender.listens:
             sender.listen(False)
         if until is not None:
-            driver.transport.limit_waiting(None)
+            driver.disarm()
         if sender.broken:
             incoming.leave()
