@@ -197,6 +197,24 @@ def test_a_refusal_says_why() -> None:
 # --- bad news
 
 
+@pytest.mark.parametrize(
+    ("name", "said"),
+    [("/root", "is there, but was silent"), ("/arm", "is an ordinary port, /arm,")],
+)
+def test_a_server_that_is_slow_is_no_ordinary_port(
+    name: str, said: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Who it is, it says at once."""
+    monkeypatch.setenv("YARP_NAMESPACE", "/other /root")
+    answer = f"This is {name} at tcp://127.0.0.1:10000/\r\n".encode()
+    with (
+        Scripted(b"", b"Welcome admin\r\n" + answer) as server,
+        YarpNameClient("127.0.0.1", server.port, 1.0) as names,
+        pytest.raises(NoNameServer, match=said),
+    ):
+        names.query("/x")
+
+
 def test_nobody_there() -> None:
     names = YarpNameClient("127.0.0.1", free_port(), 1.0)
     with pytest.raises(NoNameServer, match="yarpy server"):

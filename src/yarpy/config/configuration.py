@@ -117,10 +117,11 @@ def server_file(directory: Path, namespace: str) -> Path:
 # --- namespaces
 
 
-def namespaces(environment: Mapping[str, str], directory: Path) -> list[str]:
+def namespaces(environment: Mapping[str, str], directory: Path | None = None) -> list[str]:
     """The namespaces in use, the current one first; `["/root"]` by default."""
     from yarpy.data.bottle import Bottle
 
+    directory = conf_directory(environment) if directory is None else directory
     text = environment.get("YARP_NAMESPACE") or _read(namespace_file(directory))
     found = [item if isinstance(item, str) else str(item) for item in Bottle.from_text(text)]
     return [name for name in found if name] or [ROOT]

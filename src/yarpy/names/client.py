@@ -19,6 +19,7 @@ from functools import lru_cache
 from typing import Any, Final, Literal, TypeVar
 
 from yarpy import fork, scope
+from yarpy.config.configuration import namespaces
 from yarpy.contact import Contact
 from yarpy.data.bottle import Bottle
 from yarpy.data.text import plain_text
@@ -358,7 +359,11 @@ class YarpNameClient:
             finally:
                 line.close()
         if found is not None and found.startswith("This is /"):
-            return self._ordinary(found.split()[2])
+            name = found.split()[2]
+            if name not in namespaces(os.environ):
+                return self._ordinary(name)
+            why = f"was silent for {seconds:.2g} s: its computer is busy, or it is; try again"
+            return NoNameServer(f"the name server at {self.address} is there, but {why}")
         return self._nobody(f"did not answer within {seconds:.2g} s")
 
     def _ordinary(self, name: str = "") -> NoNameServer:

@@ -18,13 +18,13 @@ def test_others_see_our_nodes(node_peer: Any, own: str) -> None:
         return {(row[0], row[1]): row[2:] for row in node_peer.do("nodes")}
 
     with ros2.Node(f"{own}/arm", rmw="dds") as node:
-        # Six services of parameters have a reader and a writer each; and there are the events.
-        wait_until(lambda: seen().get((own, "arm"), [0, 0])[0] >= 6)
-        before = seen()[own, "arm"]
+        # Six services of parameters and one of types have a reader and a writer each; and there
+        # are events of parameters and /rosout.
+        wait_until(lambda: seen().get((own, "arm")) == [7, 9])
         writer = node.publisher("x", "std_msgs/msg/String")
-        wait_until(lambda: seen()[own, "arm"] == [before[0], before[1] + 1])
+        wait_until(lambda: seen()[own, "arm"] == [7, 10])
         writer.close()
-        wait_until(lambda: seen()[own, "arm"] == before)
+        wait_until(lambda: seen()[own, "arm"] == [7, 9])
         with yarpy.Port(f"{own}/out:o") as port:
             port.connect(f"ros2+dds:/{own}/y~std_msgs/msg/String")
             wait_until(lambda: seen().get((own, "out_o")) == [0, 1])
