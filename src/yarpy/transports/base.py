@@ -1,7 +1,7 @@
 """Transport: moves bytes and knows no protocol.
 
-Rules: blocking calls, no Python-level timeouts (a kernel receive timeout costs nothing per call;
-Windows has `polling.py`); `interrupt` wakes the threads inside; `close` is idempotent. Errors are
+Rules: blocking calls, no Python-level timeouts (a kernel receive timeout costs nothing per call, but
+begins anew behind each signal; Windows has `polling.py`); `interrupt` wakes the threads inside; `close` is idempotent. Errors are
 OSError, mapped to ours by the driver alone.
 """
 
