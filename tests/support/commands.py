@@ -1,7 +1,9 @@
 """A name server of its own for every file of tests, and the command line that uses it."""
 
+import json
 import logging
 import os
+import sys
 from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import NamedTuple
@@ -11,6 +13,10 @@ from support.command_line import CommandLine
 from support.port import free_port
 
 import yarpy
+
+PYTHON = json.dumps(sys.executable)  # as TOML has it
+#: a program of an application that runs until it is ended, on any system
+SLEEP = f"{{command = [{PYTHON}, '-c', 'import time; time.sleep(600)']}}"
 
 
 @pytest.fixture(scope="module")

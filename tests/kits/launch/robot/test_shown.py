@@ -1,6 +1,7 @@
 """The merged view: each parameter with its origin."""
 
 import os
+from pathlib import Path
 
 from yarpy import Property
 from yarpy.kits.launch.robot.robot_file import load
@@ -28,7 +29,7 @@ def test_each_line_says_where_it_is_from(write: Write) -> None:
         "  top 0  robot.xml:3:1",
         "device a (t)  robot.xml:4:1",
         "  G:",
-        "    deep 1  sub/p.xml:1:9",
+        f"    deep 1  {Path('sub', 'p.xml')}:1:9",
         "  x 2  --ex",
         "startup 4: a attach all  robot.xml:6:1",
         "shutdown 2: a park a  robot.xml:7:1",

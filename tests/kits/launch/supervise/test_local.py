@@ -3,6 +3,7 @@
 import itertools
 import os
 import signal
+import subprocess
 import sys
 import threading
 from collections.abc import Iterator
@@ -91,6 +92,17 @@ def test_one_that_dies_in_its_first_millisecond(runner: LocalRunner) -> None:
 def test_what_cannot_be_started(runner: LocalRunner, command: str, workdir: str) -> None:
     with pytest.raises(OSError):
         Started(runner, command, workdir=workdir)
+
+
+def test_whatever_cannot_be_started_is_named(
+    runner: LocalRunner, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def start(*words: object, **more: object) -> None:
+        raise OSError(2, "there is none")  # as on Windows
+
+    monkeypatch.setattr(subprocess, "Popen", start)
+    with pytest.raises(OSError, match="there is none: 'slep'"):
+        Started(runner, "slep", "600")
 
 
 def test_the_number_of_a_signal_is_the_code(runner: LocalRunner) -> None:

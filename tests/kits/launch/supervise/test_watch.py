@@ -1,11 +1,10 @@
 """Files that change while an application runs."""
 
-import json
-import sys
 from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
+from support.commands import PYTHON, SLEEP
 from support.wait import wait_until
 
 import yarpy
@@ -14,10 +13,8 @@ from yarpy.kits.launch.application.load import load
 from yarpy.kits.launch.supervise.supervisor import Supervisor
 from yarpy.kits.launch.supervise.watch import Watch, named
 
-PYTHON = json.dumps(sys.executable)
 SCRIPT = f"name = 'app'\n[programs]\nscript = {{command = [{PYTHON}, 'run.py']}}\n"
-SLEEP = f"{{command = [{PYTHON}, '-c', 'import time; time.sleep(600)']}}\n"
-TEXT = f"{SCRIPT}other = {SLEEP}"
+TEXT = f"{SCRIPT}other = {SLEEP}\n"
 
 
 def sleeping(seconds: int) -> str:
@@ -85,7 +82,7 @@ def test_a_file_that_is_still_written_is_waited_for(running: Running) -> None:
 
 def test_the_description_changes(running: Running) -> None:
     before = running.pids()
-    running.change(running.path, f"{SCRIPT}third = {SLEEP}")
+    running.change(running.path, f"{SCRIPT}third = {SLEEP}\n")
     assert running.news == ["third is new", "other is no longer in the file"]
     running.settle()
     after = running.pids()

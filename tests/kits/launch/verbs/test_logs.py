@@ -1,14 +1,16 @@
 """`yarpy logs`: of one program, of all, and as they come."""
 
+from support.commands import PYTHON
+
 
 def test_lines(cli) -> None:
     path = cli.home / "app.toml"
     path.write_text(
-        """
+        f"""
 [programs.a]
-command = ["sh", "-c", "for n in 1 2 3; do echo line $n; done; sleep 600"]
+command = [{PYTHON}, "-c", "for n in 1, 2, 3: print('line', n)\\nimport time; time.sleep(600)"]
 [programs.b]
-command = ["sh", "-c", "echo other; sleep 600"]
+command = [{PYTHON}, "-c", "print('other'); import time; time.sleep(600)"]
 """
     )
     with cli.start("up", str(path)) as up:

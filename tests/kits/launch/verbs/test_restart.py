@@ -1,9 +1,11 @@
 """`yarpy restart`: one program, by name."""
 
+from support.commands import SLEEP
+
 
 def test_it_is_started_again(cli) -> None:
     path = cli.home / "app.toml"
-    path.write_text("[programs]\na = 'sleep 600'\nb = 'sleep 600'\n")
+    path.write_text(f"[programs]\na = {SLEEP}\nb = {SLEEP}\n")
     with cli.start("up", str(path)) as up:
         up.wait_line(r"\* a running")
         up.wait_line(r"\* b running")

@@ -46,21 +46,26 @@ class LocalRunner:
     ) -> LocalHandle:
         """Start a program. Raises OSError."""
         mark = self.mark(program.name)
-        child = subprocess.Popen(
-            [*program.command],
-            cwd=program.workdir or None,
-            env={
-                **os.environ,
-                "PYTHONUNBUFFERED": "1",  # lines are seen when they are written
-                **program.environment,
-                process.MARK: mark,
-            },
-            stdin=subprocess.DEVNULL,
-            stdout=subprocess.PIPE,
-            stderr=subprocess.STDOUT,
-            bufsize=0,
-            start_new_session=True,
-        )
+        try:
+            child = subprocess.Popen(
+                [*program.command],
+                cwd=program.workdir or None,
+                env={
+                    **os.environ,
+                    "PYTHONUNBUFFERED": "1",  # lines are seen when they are written
+                    **program.environment,
+                    process.MARK: mark,
+                },
+                stdin=subprocess.DEVNULL,
+                stdout=subprocess.PIPE,
+                stderr=subprocess.STDOUT,
+                bufsize=0,
+                start_new_session=True,
+            )
+        except OSError as error:
+            if error.filename is None:  # Windows does not tell of what it speaks
+                error.filename = program.command[0]
+            raise
         return LocalHandle(child, mark, self.grace, self._scanner, on_line, on_end)
 
 
