@@ -40,6 +40,11 @@ def accepted(hello: bytes, target: str = "/arm/left", piece: int = 0) -> tuple[E
     return end, carrier
 
 
+def test_a_port_says_that_it_forgets_its_clients() -> None:
+    end, _ = accepted(bytes.fromhex("101300044d5154540502003c05 1100000009 000161"))
+    assert end.take() == bytes.fromhex("200f00000c 210400 2500 2a00 1100000000")
+
+
 @pytest.mark.parametrize(
     ("text", "why"),
     [
@@ -71,7 +76,7 @@ def test_clients_are_welcomed(piece: int) -> None:
     assert end.take() == bytes.fromhex("20020000")
     assert (carrier.route.source, carrier.version) == ("mqtt", mqtt.V3)
     end, carrier = accepted(HELLO5, piece=piece)
-    assert end.take() == bytes.fromhex("2008000005 2104002500".replace(" ", ""))
+    assert end.take() == bytes.fromhex("200a000007 210400 2500 2a00".replace(" ", ""))
     assert carrier.version == mqtt.V5
 
 

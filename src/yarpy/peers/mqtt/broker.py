@@ -24,7 +24,7 @@ from yarpy.errors import LocalProtocolError, LoginRefused, RemoteProtocolError
 from yarpy.limit import MQTT_CONNECT, MQTT_HEARD, MQTT_TOPIC
 from yarpy.log import readable
 from yarpy.peers.mqtt import packet as mqtt
-from yarpy.peers.mqtt.session import BROKER, CLEAN, RPC, SESSION, WILL, MqttPeer
+from yarpy.peers.mqtt.session import BROKER, CLEAN, HANDLING, RPC, SESSION, WILL, MqttPeer
 from yarpy.route import CarrierSpec, Route
 from yarpy.wire.effects import Switch
 from yarpy.wire.frame_stream import BINARY, FrameStream, frame
@@ -47,7 +47,7 @@ _REFUSALS: Final = {
     0x87: "it does not admit us: say +user.NAME+password.WORD",
 }
 _WORDS: Final = (
-    *("sub", RPC, "session.SECONDS", "qos.1", "qos.2", "retain", "will.TEXT"),
+    *("sub", RPC, "session.SECONDS", "qos.1", "qos.2", "retain", "will.TEXT", "retain_handling.N"),
     *("user.NAME", "password.WORD", "v5", "raw", "ws", "ws.PATH"),
 )
 _LOGIN: Final = frozenset((4, 5, 0x86, 0x87))
@@ -73,6 +73,9 @@ def check(spec: CarrierSpec) -> None:
         raise LocalProtocolError(f"+qos.{qos[:20]}: there are QoS 0, 1 and 2")
     if spec.value("will") is not None and {"sub", RPC} & {*spec.tokens}:
         raise LocalProtocolError("+will.TEXT is for ports that write to a topic of a broker")
+    handling = spec.value(HANDLING) or "0"
+    if handling not in ("0", "1", "2") or (handling != "0" and "sub" not in spec.tokens):
+        raise LocalProtocolError("+retain_handling.N is for ports that read: N is 0, 1 or 2")
     _check_session(spec)
     if spec.value("password") is not None and spec.value("user") is None:
         raise LocalProtocolError("a password for a broker needs a name: say +user.NAME")
@@ -131,6 +134,7 @@ class Client(MqttPeer):
                 self.ping = self.ping[0], int.from_bytes(wish, "big") / 2
             if (most := wishes.get(mqtt.RECEIVE_MAXIMUM)) is not None:
                 ahead = min(ahead, max(1, int.from_bytes(most, "big")))
+            self.most = int.from_bytes(wishes.get(mqtt.MOST_BYTES, b""), "big")
         self.limits = replace(self.limits, ahead=ahead)
         return bool(body[0] & 1)
 
@@ -155,9 +159,9 @@ class Client(MqttPeer):
             self.left(body)
         self.obey(stream, first, body)
 
-    def _subscribe(self, stream: ByteStream, topic: bytes, qos: int) -> None:
-        """Subscribe, at a broker."""
-        body = b"\0\1" + self._properties() + mqtt.string(topic) + bytes((qos,))
+    def _subscribe(self, stream: ByteStream, topic: bytes, options: int) -> None:
+        """Subscribe, at a broker. `options`: the QoS, and what else MQTT has there."""
+        body = b"\0\1" + self._properties() + mqtt.string(topic) + bytes((options,))
         stream.write(mqtt.packet(mqtt.SUBSCRIBE | 2, body))
 
     def _subscribed(self, topic: bytes, first: int, body: Buffer) -> None:
@@ -261,6 +265,9 @@ class Publisher(Client):
             head += self._number.to_bytes(2, "big")
         head += self._said_beside(packet)
         pieces = mqtt.publish(head, payload, self._first)
+        if not self.acks and 0 < self.most < sum(map(len, pieces)):
+            self.lost += 1
+            return
         self._small = len(pieces) == 1 and len(pieces[0]) < SMALL
         stream.write(*pieces)
 
@@ -301,7 +308,8 @@ class Subscriber(Client):
             raise LocalProtocolError("the topic stands behind the broker: mqtt+sub://HOST/TOPIC")
         stream = yield from self._enter(stream)
         known = yield from self._connect(stream)
-        self._subscribe(stream, topic, self.qos)
+        handling = int(self.route.spec.value(HANDLING) or 0)
+        self._subscribe(stream, topic, self.qos | handling << 4)
         if known:  # what it has kept may come before its answer
             return
         first, body = yield from mqtt.read_packet(stream, MQTT_HEARD)

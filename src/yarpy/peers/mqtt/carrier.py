@@ -74,8 +74,8 @@ class Mqtt(MqttPeer):
         if self.version not in (mqtt.V3, mqtt.V5):
             stream.write(mqtt.packet(mqtt.CONNACK, b"\0\1"))
             raise RemoteProtocolError(f"a client with version {self.version} of MQTT")
-        if self.version == mqtt.V5:
-            said.properties()
+        wishes = said.properties() if self.version == mqtt.V5 else {}
+        self.most = int.from_bytes(wishes.get(mqtt.MOST_BYTES, b""), "big")
         client = said.string()
         if not client and not flags & CLEAN and self.version == mqtt.V3:
             stream.write(mqtt.packet(mqtt.CONNACK, b"\0\2"))
@@ -97,7 +97,9 @@ class Mqtt(MqttPeer):
         assigned = b""
         if self.version == mqtt.V5:
             assigned = bytes((mqtt.RECEIVE_MAXIMUM, *divmod(MQTT_UNRELEASED, 256)))
-            assigned += bytes((mqtt.RETAIN_AVAILABLE, 0))
+            assigned += bytes((mqtt.RETAIN_AVAILABLE, 0, mqtt.SHARING_AVAILABLE, 0))
+            if any(wishes.get(mqtt.SESSION_EXPIRY, b"")):
+                assigned += bytes((mqtt.SESSION_EXPIRY, 0, 0, 0, 0))
             if not client:
                 assigned += b"\x12" + mqtt.string(b"yarpy-" + os.urandom(8).hex().encode())
         stream.write(self._connack(0, assigned))
@@ -158,31 +160,43 @@ class Reader(MqttPeer):
     def __init__(self, writer: MqttPeer) -> None:
         super().__init__(writer.route)
         self.version = writer.version
-        self.limits = writer.limits
+        self.limits, self.most = writer.limits, writer.most
         self.acks = False
         self._topic = writer.route.target.removeprefix("/")
-        self._wanted: set[str] = set()
+        self._wanted: dict[str, int] = {}  # the numbers of subscriptions
+        self._numbers = b""  # the properties that tell them
         self._small = False
         self._head = mqtt.string(self._topic.encode())
 
     def subscribe(self, stream: ByteStream, said: mqtt.Body, refused: bool = False) -> bool:
         """Answer a SUBSCRIBE; whether what the port writes is wanted, and may be had."""
-        number = said.take(2)
+        number, mark = said.take(2), 0
         if self.version == mqtt.V5:
-            said.properties()
+            mark = int.from_bytes(said.properties().get(mqtt.SUBSCRIPTION, b""), "big")
         granted = b""
         while said:
             pattern = said.string().decode("utf-8", "replace")
             said.take(1)
             if len(granted) > 64 or len(pattern) > MQTT_TOPIC:
                 raise RemoteProtocolError("more subscriptions than anybody needs")
+            if pattern.startswith("$share/"):
+                granted += bytes((mqtt.NO_SHARING if self.version == mqtt.V5 else 0x80,))
+                continue
             granted += b"\x80" if refused else b"\0"
             if not refused and mqtt.matches(pattern.removeprefix("/"), self._topic):
-                self._wanted.add(pattern)
+                self._wanted[pattern] = mark
             if len(self._wanted) > MQTT_PATTERNS:
                 raise RemoteProtocolError(f"more than {MQTT_PATTERNS} subscriptions")
+        self._number()
         stream.write(mqtt.packet(mqtt.SUBACK, number + self._properties() + granted))
         return bool(self._wanted)
+
+    def _number(self) -> None:
+        self._numbers = b"".join(
+            bytes((mqtt.SUBSCRIPTION,)) + mqtt.varint(mark)
+            for mark in self._wanted.values()
+            if mark
+        )
 
     def gathers(self, packet: Packet) -> bool:
         return self._small
@@ -191,7 +205,11 @@ class Reader(MqttPeer):
         if not self._wanted:
             self.unwanted += 1
             return
-        pieces = mqtt.publish(self._head + self._said_beside(packet), to_payload(packet))
+        head = self._head + self._said_beside(packet, self._numbers)
+        pieces = mqtt.publish(head, to_payload(packet))
+        if 0 < self.most < sum(map(len, pieces)):
+            self.lost += 1
+            return
         self._small = len(pieces) == 1 and len(pieces[0]) < SMALL
         stream.write(*pieces)
 
@@ -222,6 +240,7 @@ class Reader(MqttPeer):
             said.properties()
         answer += self._properties()
         while said:
-            self._wanted.discard(said.string().decode("utf-8", "replace"))
+            self._wanted.pop(said.string().decode("utf-8", "replace"), None)
             answer += b"\0" if self.version == mqtt.V5 else b""
+        self._number()
         stream.write(mqtt.packet(mqtt.UNSUBACK, answer))

@@ -38,20 +38,24 @@ QOS: Final = 0x06
 
 NO_MATCHING_SUBSCRIBERS: Final = 0x10  # the reason in a PUBACK: nobody has subscribed
 
+NO_SHARING: Final = 0x9E  # the reason in a SUBACK: there are no shared subscriptions
+
 WITH_WILL: Final = 0x04  # the reason in a DISCONNECT: the will is to be published all the same
 
 RESPONSE_TOPIC: Final = 0x08
 CORRELATION_DATA: Final = 0x09
+SUBSCRIPTION: Final = 0x0B  # the number of a subscription, which its messages have
 SESSION_EXPIRY: Final = 0x11  # of a session, in seconds
 SERVER_KEEP_ALIVE: Final = 0x13
 RECEIVE_MAXIMUM: Final = 0x21
 RETAIN_AVAILABLE: Final = 0x25
+MOST_BYTES: Final = 0x27  # of a packet that the peer takes
+SHARING_AVAILABLE: Final = 0x2A
 
 _BYTES: Final = frozenset((0x01, 0x17, 0x19, 0x24, 0x25, 0x28, 0x29, 0x2A))
 _SHORTS: Final = frozenset((0x13, 0x21, 0x22, 0x23))
 _LONGS: Final = frozenset((0x02, 0x11, 0x18, 0x27))
 _STRINGS: Final = frozenset((0x03, 0x08, 0x09, 0x12, 0x15, 0x16, 0x1A, 0x1C, 0x1F))
-_NUMBER: Final = 0x0B
 USER: Final = 0x26  # a name and a value
 
 #: first byte and body
@@ -193,7 +197,7 @@ class Body:
                 found[key] = inner.take(2)
             elif key in _LONGS:
                 found[key] = inner.take(4)
-            elif key == _NUMBER:
+            elif key == SUBSCRIPTION:
                 found[key] = inner.varint().to_bytes(4, "big")
             elif key == USER:
                 pair = inner.string(), inner.string()

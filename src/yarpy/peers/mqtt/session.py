@@ -25,6 +25,7 @@ from yarpy.wire.stream import Buffer, ByteStream
 
 RPC: Final = "rpc"
 SESSION: Final = "session"
+HANDLING: Final = "retain_handling"
 CLEAN: Final = 0x02
 WILL: Final = 0x04
 BROKER: Final = re.compile(r"/mqtt://[^/]++/")
@@ -42,12 +43,13 @@ class MqttPeer(Carrier):
     def __init__(self, route: Route) -> None:
         super().__init__(route)
         tokens = route.spec.tokens
-        newer = RPC in tokens or "v5" in tokens or route.spec.value(SESSION) is not None
+        newer = {RPC, "v5"} & {*tokens} or any(map(route.spec.value, (SESSION, HANDLING)))
         self.version = mqtt.V5 if newer else mqtt.V3
         self.raw = "raw" in tokens
         self._owed: deque[tuple[int, int]] = deque()  # for each message its QoS and number
         self._unreleased: set[int] = set()  # numbers of those with QoS 2 that may come once more
         self._asked: tuple[bytes, bytes | None] | None = None  # where the answer goes
+        self.most = 0  # bytes of a packet that the peer takes; 0: any
 
     @property
     def topic(self) -> bytes:
