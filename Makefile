@@ -111,7 +111,7 @@ macos: $(VENV)/.ready
 	for stage in pure links; do YARPY_TESTS_AS=darwin PYTHONPATH=tests $(BIN)/python -m pytest \
 	    -p support.darwin -n $(WORKERS) --dist worksteal -m "not peer" --stage $$stage || exit; done
 
-# The README's program, tests of bytes, links, names, ports, monitors and the name server with the
+# The README's program, tests of bytes, links, names, ports, commands, recordings, applications with the
 # Python of Windows, under wine, and what meets C++ YARP and a browser of Linux there; PATHS="tests/cli"
 # runs others, PATHS=quick those that take a few minutes.
 windows: $(VENV)/.ready

