@@ -52,6 +52,7 @@ QUICK = (  # those that take long first
     "tests/names",
     "tests/network",
     "tests/config",
+    "tests/kits/launch/project",
 )
 PEERS = ("peers/zmq", "peers/mqtt", "peers/ros")
 PATHS = (

@@ -1,8 +1,8 @@
 """Transport: moves bytes and knows no protocol.
 
-Rules: blocking calls, no Python-level timeouts (a kernel receive timeout costs nothing per call, but
-begins anew behind each signal; Windows has `polling.py`); `interrupt` wakes the threads inside; `close` is idempotent. Errors are
-OSError, mapped to ours by the driver alone.
+Rules: blocking calls, no Python-level timeouts (a kernel receive timeout costs nothing per call,
+but begins anew behind each signal; Windows has `polling.py`); `interrupt` wakes the threads inside;
+`close` is idempotent. Errors are OSError, mapped to ours by the driver alone.
 """
 
 from __future__ import annotations
