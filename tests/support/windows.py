@@ -54,6 +54,7 @@ QUICK = (  # those that take long first
     "tests/config",
     "tests/kits/launch/project",
 )
+LAUNCH = ("application", "document", "log", "page", "robot", "supervise")
 PEERS = ("peers/zmq", "peers/mqtt", "peers/ros")
 PATHS = (
     *("tests/nameserver", "tests/monitors", "tests/testing"),
@@ -61,7 +62,7 @@ PATHS = (
     *sorted(f"tests/port/{file.name}" for file in (ROOT / "tests/port").glob("test_*.py")),
     *sorted(
         str(file.relative_to(ROOT).as_posix())
-        for room in ("cli", "kits/record", "kits/launch", "kits/views", *PEERS)
+        for room in ("cli", "kits/record", *(f"kits/launch/{one}" for one in LAUNCH), *PEERS)
         for file in (ROOT / "tests" / room).rglob("test_*.py")
     ),
     *QUICK,
