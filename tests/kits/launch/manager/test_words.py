@@ -106,6 +106,7 @@ def test_connections(said: Said) -> None:
         ("run -1", "ERROR:   there is no (-1)"),
         ("load app X", "ERROR:   My_App is running: stop it before another one is loaded"),
         ("show mod nobody", "ERROR:   'nobody' not found."),
+        (r"show mod C:\a", r"ERROR:   'C:\a' not found."),
         ('run "', "ERROR:   No closing quotation"),
         ("check", "ERROR:   list index out of range"),
     ],

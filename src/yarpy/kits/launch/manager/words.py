@@ -51,8 +51,11 @@ class Console:
 
     def do(self, line: str) -> bool:
         """Do what a line says; return whether it was `exit`."""
+        lexer = shlex.shlex(line, posix=True, punctuation_chars=False)
+        lexer.whitespace_split = True
+        lexer.commenters = lexer.escape = ""  # a backslash is one, as in paths of Windows
         try:
-            words = shlex.split(line)
+            words = [*lexer]
         except ValueError as error:
             self.say(f"ERROR:   {error}")
             return False
