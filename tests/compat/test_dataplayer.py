@@ -94,7 +94,7 @@ def test_words(server: yarpy.NameServer, dataset: Path) -> None:
             assert ask(player, "repeat", "maybe") == fail and ask(player, "repeat", 1) == ok
             del got[:]
             assert ask(player, "play") == ok
-            wait_until(lambda: [n for _, n, _ in got].count(19) == 2, what="it was played twice")
+            wait_until(lambda: [n for _, n, _ in got].count(19) >= 2, what="it was played twice")
         assert ask(player, "sing") == fail and ask(player, "getFrame") == fail
         assert "getAllParts" in ask(player, "help")
         # Another data set takes the place of this one.

@@ -15,6 +15,7 @@ from yarpy import record
 from yarpy.clock import NetworkClock
 from yarpy.errors import AddressError, LocalProtocolError, UnknownName
 from yarpy.kits.record.mcap.writer import McapWriter
+from yarpy.kits.record.playback import player as player_module
 from yarpy.kits.record.playback.player import Player
 
 Got = list[tuple[str, str, bytes, float]]
@@ -27,7 +28,13 @@ def names():
 
 
 @pytest.fixture
-def recording(tmp_path: Path):
+def patience(monkeypatch: pytest.MonkeyPatch) -> None:
+    """No reader is given up, however slow the machine is."""
+    monkeypatch.setattr(player_module, "READER_TIMEOUT", HANG)
+
+
+@pytest.fixture
+def recording(tmp_path: Path, patience):
     """100 messages, 10 ms apart, of /a and /b in turn."""
     with record.open(recorded(tmp_path / "x.mcap", 100)) as found:
         yield found
@@ -69,7 +76,7 @@ def test_the_same_bytes_in_the_same_time(names, recording) -> None:
     assert (player.played, player.dropped) == (100, 0)
 
 
-def test_messages_of_every_kind_come_back(names, tmp_path) -> None:
+def test_messages_of_every_kind_come_back(names, tmp_path, patience) -> None:
     payloads = [payload_of(value) for value in ([1, "x"], "word", [], yarpy.Vector([1.5]))]
     with McapWriter(tmp_path / "y.mcap") as writer:
         for n, payload in enumerate(payloads):
