@@ -4,6 +4,7 @@ import subprocess
 from subprocess import PIPE
 
 from support.command_line import YARPY
+from support.wait import HANG
 
 import yarpy
 
@@ -44,7 +45,7 @@ def test_nobody_reads_what_it_prints(cli, names):
         ) as process,
     ):
         process.stdout.close()
-        assert yarpy.wait_for("/talk/d:o", timeout=10, names=names)
+        assert yarpy.wait_for("/talk/d:o", timeout=HANG, names=names)
         source.connect("/talk/d:i")
         for _ in range(3):
             source.write(["x"])

@@ -27,9 +27,9 @@ def test_lines_of_all_that_log_as_people_and_programs_read_them(cli, names):
             cli.start("log") as plain,
             cli.start("log", "--json", "--level", "WARNING", "/log/*/one/*") as narrow,
         ):
-            assert one.wait_for_outputs(2, timeout=20)
+            assert one.wait_for_outputs(2, timeout=HANG)
             with yarpy.Port("/yarprunlog/two", names=names) as two:  # comes later
-                two.wait_for_outputs(1, timeout=20)
+                two.wait_for_outputs(1, timeout=HANG)
                 two.write(["[/log/vm/two/2]", "[ERROR] worse"])
                 plain.wait_line(r"^--:--:-- vm/two/2 \[ERROR\] worse$", stream="out")
             one.write(line("/log/vm/one/1", "hello\n00:00:00 forged [INFO] line \x1b[2J"))
@@ -75,7 +75,7 @@ def test_filters_and_files(cli, names, tmp_path):
     with yarpy.Port("/log/vm/three/3", names=names) as three:
         options = ("--program", "three", "--grep", "wanted", "--name", "/mine", *words)
         with cli.start("log", *options) as process:
-            assert three.wait_for_outputs(timeout=20)
+            assert three.wait_for_outputs(timeout=HANG)
             three.write(line("/log/vm/three/3", "other", time=1795219554.5))
             three.write(line("/log/vm/three/3", "Wanted", time=1795219555.5))
             process.wait_line(r" vm/three/3 \[INFO\] Wanted$", stream="out")
