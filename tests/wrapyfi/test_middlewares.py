@@ -128,7 +128,7 @@ def _start_websocket(peer: Peer, stack: ExitStack, monkeypatch: Any, folder: Pat
     monkeypatch.setenv("WRAPYFI_WEBSOCKET_SOCKET_PORT", str(port))
     client = Client()
     client.on("*", lambda event, data: peer.seen.update({event: data}))
-    client.connect(f"http://127.0.0.1:{port}")
+    client.connect(f"http://127.0.0.1:{port}", wait_timeout=HANG)
     stack.callback(client.disconnect)
     peer.send = client.emit
 

@@ -24,8 +24,13 @@ Odd: Any = Library(
 
 @pytest.mark.parametrize("honest", [True, False])
 def test_a_type_that_nobody_here_knows(
-    names: yarpy.LocalNames, honest: bool, caplog: pytest.LogCaptureFixture
+    names: yarpy.LocalNames,
+    honest: bool,
+    caplog: pytest.LogCaptureFixture,
+    monkeypatch: pytest.MonkeyPatch,
 ) -> None:
+    monkeypatch.setattr("yarpy.peers.ros2.zenoh.description.TIMEOUT", HANG)
+
     def describe(message: yarpy.Message) -> object:
         asked = message.ros  # type: ignore[attr-defined]
         if not honest:
