@@ -18,13 +18,13 @@ _SIMULATED: Final = (
     *("fakeSpeechTranscription", "map2DStorage", "robotDescriptionStorage"),
 )
 _KINDS: Final = (
-    *("LLM", "RGBDSensor", "audioRecorder", "chatBot", "joypadControl", "localization2D", "map2D"),
+    *("LLM", "RGBDSensor", "audioRecorder", "chatBot", "JoypadControl", "localization2D", "map2D"),
     *("mobileBaseVelocityControl", "navigation2D", "odometry2D", "robotDescription"),
     *("serialPort", "simulatedWorld", "speechSynthesizer", "speechTranscription"),
 )
 _SERVERS: Final = (
     *(f"{kind}_nws_yarp" for kind in _KINDS),
-    *("AudioPlayerWrapper", "JoypadControlServer", "audioPlayerWrapper"),
+    *("AudioPlayerWrapper", "JoypadControlServer", "rgbdSensor_nws_yarp"),
 )
 _CLIENTS: Final = (
     *(f"{kind}_nwc_yarp" for kind in _KINDS),

@@ -65,12 +65,12 @@ def test_rgbd(devices: Any) -> None:
 
 def test_joypad_microphone_speaker(devices: Any) -> None:
     for fake, server, name in (
-        ("fakeJoypad", "joypadControl_nws_yarp", "/pad"),
+        ("fakeJoypad", "JoypadControl_nws_yarp", "/pad"),
         ("fakeMicrophone", "audioRecorder_nws_yarp", "/mic"),
-        ("fakeSpeaker", "audioPlayerWrapper", "/speaker"),
+        ("fakeSpeaker", "AudioPlayerWrapper", "/speaker"),
     ):
         assert devices(f"(device {server}) (name {name})").attach(devices(f"(device {fake})"))
-    assert devices("(device joypadControl_nwc_yarp) (remote /pad)").isValid()
+    assert devices("(device JoypadControl_nwc_yarp) (remote /pad)").isValid()
     assert devices("(device audioRecorder_nwc_yarp) (remote /mic)").isValid()
     port = yarp.RpcClient()
     assert port.open("/ask") and port.addOutput("/speaker/rpc:i")

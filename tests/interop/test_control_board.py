@@ -37,8 +37,9 @@ def chain(network: CppYarp):
         )
         process = host.__enter__()
         try:
-            assert {link.carrier for link in server._state_ext.outputs} == {"udp"}
-            assert {link.carrier for link in server._command.inputs} == {"udp"}
+            carriers = {"udp" if network.version < (4, 0) else "fast_tcp"}
+            assert {link.carrier for link in server._state_ext.outputs} == carriers
+            assert {link.carrier for link in server._command.inputs} == carriers
             with ControlBoard("/cpp", carrier="udp", timeout=HANG) as board:
                 yield device, board
         except AssertionError:
@@ -59,7 +60,7 @@ def board(chain, device):
     return chain[1]
 
 
-def test_measurements(device, board):
+def test_measurements(network: CppYarp, device, board):
     device.where[:] = [1.0, 2.0, 3.0]
     wait_until(lambda: board.encoders() == [1.0, 2.0, 3.0])
     assert board.axes == 3
@@ -69,7 +70,8 @@ def test_measurements(device, board):
     assert board.torques() == [0.0, 0.0, 0.0]
     assert board.currents() == [3300.0, 3400.0, 3500.0]
     assert board.duty_cycles() == [33.0, 34.0, 35.0]
-    assert board.motor_temperatures() == [40.0, 41.0, 42.0]
+    if network.version < (4, 0):  # whose client asks its own stream for another word
+        assert board.motor_temperatures() == [40.0, 41.0, 42.0]
     assert board.motion_done() == [True, True, True]
 
 
@@ -124,8 +126,10 @@ COMMANDS = [
 
 
 @pytest.mark.parametrize(("call", "heard"), COMMANDS, ids=lambda value: value[0])
-def test_commands(device, board, call, heard):
+def test_commands(network: CppYarp, device, board, call, heard):
     method, *arguments = call
+    if network.version >= (4, 0) and call[-1] == [1.0, 2.0, 3.0, 4.0]:
+        pytest.skip("YARP 4 has three parameters of a calibration")
 
     # A datagram may get lost, and udp is what C++ uses: it is sent until it is heard.
     def arrived():
@@ -174,7 +178,7 @@ def test_ranges_and_targets(device, board):
     assert board.position_targets()[1] == 5.0
 
 
-def test_controllers(device, board):
+def test_controllers(network: CppYarp, device, board):
     for kind in ("pos", "vel", "trq", "cur"):
         pids = board.pids[kind]
         assert pids.gains[0] == Gains(*map(float, range(1, 11)))
@@ -188,11 +192,14 @@ def test_controllers(device, board):
         assert [*device.pids[kind].error_limits] == [1.0, 2.0, 3.0]
         assert [*device.pids[kind].enabled] == [True, False, True]
         assert device.pids[kind].was_reset == [2]
-        assert pids.errors() == [0.5] * 3 and pids.outputs() == [0.25] * 3
+        assert pids.errors() == [0.5] * 3
+        if network.version < (4, 0):  # whose server gives the targets instead
+            assert pids.outputs() == [0.25] * 3
 
 
-def test_variables(device, board):
-    assert [*board.variables] == ["gain", "limit"]
+def test_variables(network: CppYarp, device, board):
+    if network.version < (4, 0):  # whose client crashes with more than one
+        assert [*board.variables] == ["gain", "limit"]
     assert board.variables["gain"] == [1.5, "low"]
     board.variables["gain"] = [2.5, "high"]
     assert device.variables["gain"] == [2.5, "high"]
@@ -212,11 +219,13 @@ def test_refusals_come_back(device, board):
     del device.motion_done, device.position_move
 
 
-def test_the_same_questions_get_the_same_replies(device, board):
+def test_the_same_questions_get_the_same_replies(network: CppYarp, device, board):
     """Asked of us and of C++ in front of us, word for word but for counters and times.
 
     (Not of `torq mtps`: those are four numbers in C++ 3.5, nine from 3.8 on.)
     """
+    if network.version >= (4, 0):
+        pytest.skip("YARP 4 asks in Thrift")
     questions = [
         "get axes", "get encs", "[get] [enc] 1", "get pos 1", "get poss", "get posg 2 (0 2)",
         "get vels", "get velg 2 (1 0)", "get acc 0", "get don 1", "get dons", "get dong 2 (0 1)",

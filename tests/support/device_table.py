@@ -111,24 +111,16 @@ OWN: Final = (
     ),
 )
 
-#: What C++ 4.0 was recorded to say, in tests/golden.
-RECORDED: Final = {
-    "ControlBoard": "yarp4_board",
-    "FrameGrabber": "yarp4_camera",
-    "MultiSensor": "yarp4_sensors",
-    "Battery": "yarp4_battery",
-    "Laser": "yarp4_laser",
-}
-
-#: Tests that C++ 3.5 does not meet; all others meet 3.9.1, too, where YARPY_CPP_YARP names it.
-NEWER: Final = {"test_newer_devices.py"}
+#: Tests that C++ 3.5 does not meet, and that 3.9.1 does not; all others meet both, and 4.0.0, where
+#: YARPY_CPP_YARP names it.
+NEWER: Final = {"test_newer_devices.py", "test_yarp4_devices.py"}
+LATEST: Final = {"test_yarp4_devices.py"}
 
 #: What the servers of C++ 3.5 and 3.9 are called there, and in the tests.
 OLDER: Final = {
     "RGBDSensor_nws_yarp": "rgbdSensor_nws_yarp",
-    "audioPlayerWrapper": "AudioPlayerWrapper",
     "battery_nws_yarp": "batteryWrapper",
-    "joypadControl_nws_yarp": "JoypadControlServer",
+    "JoypadControl_nws_yarp": "JoypadControlServer",
     "robotDescription_nws_yarp": "robotDescriptionServer",
 }
 
@@ -137,8 +129,14 @@ ALSO: Final = {"IRGBDSensor": "IDepthVisualParams"}
 
 #: What no C++ here has, or was not asked for when it was recorded.
 _SINCE: Final = (
-    *("ILinearVelocitySensors", "IThreeAxisAngularAccelerometers"),
-    *("IJointBrake", "IVelocityDirect", "IFrameGrabberControlsDC1394"),
+    *("ILinearVelocitySensors", "IThreeAxisAngularAccelerometers", "IFrameGrabberControlsDC1394"),
+)
+#: What only boards of 4.0 have.
+_BOARD_4: Final = ("IJointBrake", "IVelocityDirect")
+#: What was not tried with 4.0.0.
+_NOT_4: Final = (
+    *("AnalogSensor", "AudioPlayer", "Descriptions", "Joypad", "LanguageModel", "Navigation2D"),
+    *("SerialPort", "VirtualAnalogServer", "World"),
 )
 
 _ALONE: Final = "C++ has no server or client of it: it stays within a program"
@@ -170,7 +168,6 @@ def table() -> str:
     """The rows, with their head."""
     views = "".join(path.read_text() for path in (ROOT / "compat/src/yarp").glob("_*.py"))
     tests = {path.name: path.read_text() for path in (ROOT / "tests/interop").glob("test_*.py")}
-    recorded = {path.stem for path in (ROOT / "tests/golden").glob("yarp4_*.json")}
     rows: dict[str, tuple[str, str, str, str]] = {}
     for name, server, client, fake, has in OWN:
         for each in has.split():
@@ -192,9 +189,10 @@ def table() -> str:
         view = "✔" if f"def view{each}(" in views else ""
         peer = f'"{OLDER.get(devices[0], devices[0])}"'
         among = {file for file, text in tests.items() if peer in text}
-        tried = [version for version, files in (("3.5", among - NEWER), ("3.9.1", among)) if files]
+        rest = {"3.5": NEWER, "3.9.1": LATEST, **({} if name in _NOT_4 else {"4.0.0": set()})}
+        tried = [version for version, others in rest.items() if among - others]
+        tried = ["4.0.0"] if each in _BOARD_4 else tried
         tried[:1] = [f"C++ {version}" for version in tried[:1]]
-        tried += ["4.0 as recorded"] if RECORDED.get(name) in recorded else []
         tried = [] if each in _SINCE else tried
         lines.append(f"| `{each}` | `{name}` ✔ | {there} | {view} | {', '.join(tried)} |")
     return "\n".join(lines) + "\n"

@@ -20,7 +20,7 @@ INTERFACES = interfaces()
 CLIENTS = {each.NWC: each for each in INTERFACES.values() if each.NWC}
 CLIENTS |= {"JoypadControlClient": devices.Joypad, "RGBDSensorClient": devices.DepthCamera}
 SERVED = {each.NWS: each for each in INTERFACES.values()}
-SERVED |= {"JoypadControlServer": devices.Joypad, "AudioPlayerWrapper": devices.AudioPlayer}
+SERVED |= {"JoypadControlServer": devices.Joypad, "rgbdSensor_nws_yarp": devices.DepthCamera}
 #: Clients with classes of their own.
 OWN: dict[str, Any] = {
     "analogsensorclient": devices.AnalogSensor,

@@ -128,7 +128,7 @@ def test_the_server_that_a_device_wants() -> None:
     assert wrapper.server_of(Sensor()) == "multipleanalogsensorsserver"
     assert wrapper.server_of(devices.SimulatedAnalogSensor()) == "analogServer"
     assert wrapper.server_of(devices.SimulatedFrameWriter()) == "frameWriter_nws_yarp"
-    assert wrapper.server_of(devices.SimulatedJoypad()) == "joypadControl_nws_yarp"
+    assert wrapper.server_of(devices.SimulatedJoypad()) == "JoypadControl_nws_yarp"
     # It localizes, navigates and measures: its type says what for.
     base = devices.SimulatedBase()
     assert wrapper.server_of(base, "fakeLocalizer") == "localization2D_nws_yarp"

@@ -26,7 +26,7 @@ _KINDS: Final = {
     "chatBot": ("a chat bot", "fakeChatBotDevice"),
     "controlBoard": ("the joints of a robot", "fakeMotionControl"),
     "frameGrabber": ("a camera", "fakeFrameGrabber"),
-    "joypadControl": ("a joypad", "fakeJoypad"),
+    "JoypadControl": ("a joypad", "fakeJoypad"),
     "localization2D": ("the localization of a robot", "fakeLocalizer"),
     "map2D": ("a store of maps and places", ""),
     "mobileBaseVelocityControl": ("a base that drives", ""),
@@ -41,11 +41,11 @@ _KINDS: Final = {
 }
 _SERVERS: Final = {
     "analogServer": "a sensor with channels, as older robots have it",
-    "audioPlayerWrapper": "a loudspeaker",
+    "AudioPlayerWrapper": "a loudspeaker",
     "frameWriter_nws_yarp": "a screen: shows the pictures that come to its port",
     "controlboardwrapper2": "joints, as older YARP called it",
-    "AudioPlayerWrapper": "a loudspeaker, as older YARP called it",
     "JoypadControlServer": "a joypad, as older YARP called it",
+    "rgbdSensor_nws_yarp": "a camera with distances, as older YARP called it",
     "multipleanalogsensorsserver": "sensors, such as an inertial unit",
 }
 _CLIENTS: Final = {
@@ -72,13 +72,13 @@ _OTHERS: Final = {
     "fakePositionSensor": "simulated position and orientation: "
     "served by multipleanalogsensorsserver",
     "fakeSimulatedWorld": "a world without a simulator: served by simulatedWorld_nws_yarp",
-    "fakeSpeaker": "simulated loudspeaker: served by audioPlayerWrapper",
+    "fakeSpeaker": "simulated loudspeaker: served by AudioPlayerWrapper",
     "frameTransformServer": "knows where frames are, and tells who asks; serves itself",
     "map2DStorage": "maps and places, in memory: served by map2D_nws_yarp",
-    "gamepad": "a gamepad or joystick of Linux: served by joypadControl_nws_yarp",
+    "gamepad": "a gamepad or joystick of Linux: served by JoypadControl_nws_yarp",
     "multipleanalogsensorsremapper": "the sensors of what is attached, as one device",
     "opencv_grabber": "a camera or film of OpenCV: served by frameGrabber_nws_yarp",
-    "portaudioPlayer": "the loudspeaker of this computer: served by audioPlayerWrapper",
+    "portaudioPlayer": "the loudspeaker of this computer: served by AudioPlayerWrapper",
     "portaudioRecorder": "the microphone of this computer: served by audioRecorder_nws_yarp",
     "realsense2": "a RealSense camera: served by RGBDSensor_nws_yarp",
     "remotecontrolboardremapper": "the joints of boards of other programs, as one board",

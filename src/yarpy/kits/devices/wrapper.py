@@ -26,8 +26,8 @@ if TYPE_CHECKING:
 
 #: What some servers were called before.
 _OLDER: Final = {
-    "AudioPlayerWrapper": "audioPlayerWrapper",
-    "JoypadControlServer": "joypadControl_nws_yarp",
+    "JoypadControlServer": "JoypadControl_nws_yarp",
+    "rgbdSensor_nws_yarp": "RGBDSensor_nws_yarp",
 }
 
 

@@ -28,6 +28,7 @@ from yarpy import registry
 from yarpy.data.bottle import Bottle
 from yarpy.data.failure import answer_of, error_of, mark, raised
 from yarpy.data.value import LIST, STRING, Int16, Vocab
+from yarpy.data.yarp4 import is_yarp4
 from yarpy.errors import DecodeError, LocalProtocolError, RemoteError, YarpError
 from yarpy.kits.thrift.apache import serve
 from yarpy.kits.thrift.apache.message import Call
@@ -96,7 +97,7 @@ class Service:
                 values = method.yarp4_arguments(data, at, error)
                 self._note(message.source, True)
             else:
-                if self._spellings and method.asks_floats:
+                if message.source in self._spellings and method.asks_floats and _is_yarp3(data):
                     self._note(message.source, False)
             function = getattr(self, method.attribute)
             if method.oneway and message.wants_reply:
@@ -304,3 +305,11 @@ class Service:
 
     def __exit__(self, *details: object) -> None:
         self.close()
+
+
+def _is_yarp3(data: bytes) -> bool:
+    """Return whether only YARP 3 spells a request like that. No Bottle: a Sound of 3.9."""
+    try:
+        return is_yarp4(data) is False
+    except DecodeError:
+        return True

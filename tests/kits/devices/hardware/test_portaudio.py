@@ -142,7 +142,7 @@ def test_on_ports(heard: list[int], speaker: Speaker, names: LocalNames) -> None
     assert isinstance(microphone, Microphone)
     assert isinstance(loudspeaker, Loudspeaker)
     assert server_of(microphone) == "audioRecorder_nws_yarp"
-    assert server_of(loudspeaker) == "audioPlayerWrapper"
+    assert server_of(loudspeaker) == "AudioPlayerWrapper"
     with (
         microphone,
         loudspeaker,

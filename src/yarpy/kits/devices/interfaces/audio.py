@@ -72,7 +72,7 @@ class AudioRecorder(Interface):
 class AudioPlayer(Interface):
     """A loudspeaker."""
 
-    NWS = "audioPlayerWrapper"
+    NWS = "AudioPlayerWrapper"
     FAKE = "fakeSpeaker"
     VIEW = "IAudioRender"
     RPC = "rpc:i"

@@ -130,7 +130,7 @@ class JoypadState(Struct):
 class Joypad(Interface):
     """A joypad, gamepad or joystick."""
 
-    NWS, NWC = "joypadControl_nws_yarp", "joypadControl_nwc_yarp"
+    NWS, NWC = "JoypadControl_nws_yarp", "JoypadControl_nwc_yarp"
     FAKE = "fakeJoypad"
     VIEW = "IJoypadController"
     RPC = "rpc:i"
