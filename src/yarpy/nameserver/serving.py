@@ -37,7 +37,7 @@ from yarpy.nameserver.topology import Action, Topology
 from yarpy.port.assembly import open_hub
 from yarpy.port.connect import identity, probe
 from yarpy.port.connect.choosing import MEMORY
-from yarpy.port.connect.connecting import joined
+from yarpy.port.connect.target import joined
 from yarpy.port.mailbox import Mailbox
 from yarpy.registry import carriers
 from yarpy.transports.bind import listening_host

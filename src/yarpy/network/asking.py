@@ -16,7 +16,7 @@ from yarpy.names.base import NameClient
 from yarpy.names.default import DEFAULT, secret
 from yarpy.network.dialled import dialled_in
 from yarpy.port.connect import identity, probe
-from yarpy.port.connect.connecting import unknown
+from yarpy.port.connect.target import unknown
 from yarpy.route import parse_carrier
 from yarpy.scope import ASKING, Scope, apart, moment
 

@@ -27,7 +27,7 @@ from yarpy.names.default import DEFAULT, secret
 from yarpy.network.asking import find_end
 from yarpy.network.dialled import dialled_in
 from yarpy.port.connect import identity, probe, refusal
-from yarpy.port.connect.connecting import agreed, refuse_medium
+from yarpy.port.connect.target import agreed, refuse_medium
 from yarpy.route import CarrierSpec, parse_carrier
 from yarpy.scope import CONNECTING
 

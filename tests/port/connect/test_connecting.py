@@ -21,7 +21,6 @@ from yarpy.errors import (
     YarpError,
 )
 from yarpy.nameserver.local import LocalNames
-from yarpy.port.connect import connecting
 from yarpy.port.port import BufferedPort, Port
 from yarpy.port.rpc import RpcServer
 
@@ -77,13 +76,6 @@ def test_peer_that_breaks_the_rules(names: LocalNames) -> None:
             out.connect(f"/127.0.0.1:{peer.getsockname()[1]}")
 
 
-def test_nearest_name_is_suggested(names: LocalNames) -> None:
-    with Port("/camera/left", names=names), Port("/camera/right", names=names):
-        assert 'did you mean "/camera/left"' in str(connecting.unknown("/camera/lef", names))
-        assert "is its program running" in str(connecting.unknown("/something", names))
-    assert "is its program running" in str(connecting.unknown("/x", None))
-
-
 def test_own_multicast_group_does_not_count_as_a_name(names: LocalNames) -> None:
     with pytest.raises(UnknownName), Port("/out", names=names) as out:
         out.connect("/nobody", "mcast")
@@ -110,22 +102,6 @@ def test_what_pulls_is_ended_by_who_has_made_it(names: LocalNames) -> None:
             assert view.disconnect(target)
             wait_until(lambda: not view.inputs and not camera.outputs)
             assert not view.disconnect(target)
-
-
-JOINED = [
-    # destination, carrier, as one text
-    ("/in", "", "/in"),
-    ("/in", "tcp", "tcp://in"),
-    ("/in", "tcp+recv.x", "tcp+recv.x://in"),
-    ("udp://in", "tcp", "tcp://in"),
-    ("/127.0.0.1:10002", "tcp", "tcp://127.0.0.1:10002"),
-    ("tcp://127.0.0.1:10002/", "udp", "udp://127.0.0.1:10002"),
-]
-
-
-@pytest.mark.parametrize(("destination", "carrier", "text"), JOINED)
-def test_destination_and_carrier_as_one(destination: str, carrier: str, text: str) -> None:
-    assert connecting.joined(destination, carrier) == text
 
 
 @pytest.mark.parametrize(

@@ -16,7 +16,7 @@ from yarpy.limit import number_in
 from yarpy.names.default import secret
 from yarpy.network.traffic import PortState
 from yarpy.port.connect import probe
-from yarpy.port.connect.connecting import unknown
+from yarpy.port.connect.target import unknown
 
 RANGE: Final = 1000  # numbers that a name server hands out
 MOST: Final = 200  # listeners of this computer that are asked for their names

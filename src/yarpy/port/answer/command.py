@@ -11,8 +11,9 @@ from yarpy.errors import YarpError
 from yarpy.link.receive.inbound import Inbound
 from yarpy.log import logger
 from yarpy.port.connect import refusal
-from yarpy.port.connect.connecting import dial, joined
+from yarpy.port.connect.connecting import dial
 from yarpy.port.connect.disconnecting import disconnect_input, disconnect_output
+from yarpy.port.connect.target import joined
 from yarpy.port.hub import Hub
 from yarpy.route import masked
 from yarpy.wire.message import Message

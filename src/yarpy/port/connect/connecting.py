@@ -41,6 +41,7 @@ from yarpy.names.address import is_local, is_loopback
 from yarpy.port.connect import identity, probe, refusal
 from yarpy.port.connect.choosing import choose, instead
 from yarpy.port.connect.disconnecting import close_output
+from yarpy.port.connect.target import agreed, is_topic, joined, refuse_medium, unknown
 from yarpy.port.hub import Hub
 from yarpy.route import CarrierSpec, Route, masked, parse_carrier
 from yarpy.threads import Thread
@@ -67,7 +68,7 @@ def connect(
     if not wanted.carrier or ":/" not in target:  # what is written in front of a target counts
         refuse_medium(carrier)
         wanted = replace(wanted, carrier=carrier)
-    elif _is_topic(wanted):
+    elif is_topic(wanted):
         wanted = replace(wanted, carrier=agreed(carrier, wanted.carrier).whole)
     _connect(hub, wanted, target, lost, again)
 
@@ -115,76 +116,10 @@ def _told(hub: Hub, wanted: Contact, target: str, error: YarpError) -> YarpError
     return type(error)(f'"{hub.name}" cannot connect to "{target}" over {over}: {error}')
 
 
-def unknown(name: str, names: object, carrier: str = "") -> UnknownName:
-    """The error for a name that nobody knows, with the nearest one that somebody does."""
-    from difflib import get_close_matches
-
-    if reach(carrier).broker:
-        base = parse_carrier(carrier).base
-        return UnknownName(
-            f'no port "{name}" is registered; is it a broker? its topics are {base}://HOST/TOPIC'
-        )
-    near: list[str] = []
-    try:
-        known = {contact.name: contact for contact in names.list()}  # type: ignore[attr-defined]
-        if name in known and known[name].carrier == "topic":
-            return UnknownName(
-                f'"{name}" is a topic, not a port: a port whose name is {name}@/NODE takes '
-                "part in it"
-            )
-        near = get_close_matches(name, known.keys() - {name}, n=1)
-    except (YarpError, AttributeError):
-        pass
-    hint = f'did you mean "{near[0]}"?' if near else "is its program running?"
-    return UnknownName(f'no port "{name}" is registered: {hint} (`yarpy name list` shows all)')
-
-
-def _is_topic(contact: Contact) -> bool:
-    """Return whether the target is no port but a topic, key or service, which only one protocol
-    leads to."""
-    return contact.reaches.topic or contact.reaches.broker
-
-
-def refuse_medium(carrier: str) -> None:
-    """Raise LocalProtocolError for a carrier that leads to no port, where one is named."""
-    if reach(carrier).topic:
-        base = parse_carrier(carrier).base
-        raise LocalProtocolError(
-            f"{base} leads to what is no port: one end is {base}://..., else leave it out"
-        )
-
-
-def agreed(given: str, fixed: str) -> CarrierSpec:
-    """The carrier of an end that speaks `fixed` alone, with what is added to the one that is given,
-    if any. Raises LocalProtocolError if that is another one."""
-    wanted, spec = parse_carrier(given or fixed), parse_carrier(fixed)
-    if wanted.base != spec.base:
-        raise LocalProtocolError(f"conflict between {wanted} and {spec}")
-    return spec.plus(*(one for one in wanted.tokens if one not in spec.tokens))
-
-
-def joined(dest: str, carrier: str) -> str:
-    """Destination and carrier as one text, the way C++ puts them together.
-
-    Raises LocalProtocolError for two that do not go together."""
-    if not carrier:
-        return dest
-    bare = parse_contact(dest) if dest else None
-    if bare is not None and _is_topic(bare):
-        carrier = agreed(carrier, bare.carrier).whole
-    else:
-        refuse_medium(carrier)
-    if bare is not None and bare.carrier and not bare.reachable:
-        dest = bare.name
-    if bare is not None and bare.reachable:
-        return f"{carrier}://{bare.address}{bare.name}"
-    return f"{carrier}:/{dest}"
-
-
 def subscribe(hub: Hub, source: str, carrier: str) -> None:
     """Ask the port `source` to send to `hub`; see BasePort.listen_to."""
     contact = parse_contact(source)
-    if _is_topic(contact):
+    if is_topic(contact):
         spec = agreed(carrier, contact.carrier)
         spec = spec if LISTENS in spec.tokens else spec.plus(LISTENS)
         _connect(hub, replace(contact, carrier=spec.whole), source)
