@@ -1,5 +1,7 @@
 """An eye as a device."""
 
+from functools import cache
+
 import pytest
 
 from yarpy.kits.sim.body import Body
@@ -8,7 +10,7 @@ from yarpy.kits.sim.icub import ICUB_HEAD
 from yarpy.kits.sim.joint import Joint
 from yarpy.kits.sim.scene import room
 
-SCENE = room()
+scene = cache(room)  # not before a test wants it: workers that run none would paint it, too
 
 
 class Clock:
@@ -29,7 +31,7 @@ def body(clock: Clock) -> Body:
 
 
 def test_it_sees_where_the_head_looks(body: Body, clock: Clock):
-    eye = Eye(Shutter(body), SCENE, "left", 80, 60)
+    eye = Eye(Shutter(body), scene(), "left", 80, 60)
     before = eye.image()
     assert (before.width, before.height, before.code) == (80, 60, "rgb")
     assert eye.timestamp() == 5.0
@@ -43,7 +45,7 @@ def test_it_sees_where_the_head_looks(body: Body, clock: Clock):
 
 def test_both_eyes_see_the_same_moment(body: Body, clock: Clock):
     shutter = Shutter(body)
-    left, right = (Eye(shutter, SCENE, side, 80, 60) for side in ("left", "right"))
+    left, right = (Eye(shutter, scene(), side, 80, 60) for side in ("left", "right"))
     with body.present() as joints:
         joints[2].reference.move_to(40.0)
     for number in range(1, 10):
@@ -58,7 +60,7 @@ def test_both_eyes_see_the_same_moment(body: Body, clock: Clock):
 
 
 def test_each_eye_sees_a_moment_once(body: Body, clock: Clock):
-    left = Eye(Shutter(body), SCENE, "left", 80, 60)
+    left = Eye(Shutter(body), scene(), "left", 80, 60)
     for _ in range(3):
         clock.now += 0.001
         left.image()
@@ -66,7 +68,7 @@ def test_each_eye_sees_a_moment_once(body: Body, clock: Clock):
 
 
 def test_facts(body: Body):
-    eye = Eye(Shutter(body), SCENE, "right")
+    eye = Eye(Shutter(body), scene(), "right")
     assert eye.resolution == (320, 240)
     assert eye.field_of_view == pytest.approx((64.0, 50.2), abs=0.1)
     eye.resolution = (64, 48)

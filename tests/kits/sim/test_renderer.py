@@ -1,5 +1,7 @@
 """Pictures of the room, against a caster of single rays that knows none of the tricks."""
 
+from functools import cache
+
 import numpy as np
 import pytest
 
@@ -7,8 +9,7 @@ from yarpy.kits.sim.head import BASELINE, Pose, eye_pose
 from yarpy.kits.sim.renderer import Renderer
 from yarpy.kits.sim.scene import Scene, room
 
-SCENE = room()
-STILL = Scene(SCENE.background, SCENE.solids, ())
+scene = cache(room)  # not before a test wants it: workers that run none would paint it, too
 POSES = [
     (0, 0, 0, 0, 0, 0),
     (-25, 0, 0, -10, 0, 0),
@@ -19,9 +20,15 @@ POSES = [
 ]
 
 
+@cache
+def still() -> Scene:
+    """The room without its ball."""
+    return Scene(scene().background, scene().solids, ())
+
+
 @pytest.fixture(scope="module")
 def renderer() -> Renderer:
-    return Renderer(SCENE, 160, 120)
+    return Renderer(scene(), 160, 120)
 
 
 def cast(scene: Scene, pose: Pose, width: int, height: int) -> np.ndarray:
@@ -59,9 +66,9 @@ def red_ball(pixels: np.ndarray) -> tuple[float, float]:
 @pytest.mark.parametrize("angles", POSES, ids=str)
 def test_every_pixel(angles, side):
     pose = eye_pose(angles, side)
-    ours = Renderer(STILL, 160, 120).render(pose, 0.0)
+    ours = Renderer(still(), 160, 120).render(pose, 0.0)
     assert ours.shape == (120, 160, 3) and ours.dtype == np.uint8
-    other = cast(STILL, pose, 160, 120)
+    other = cast(still(), pose, 160, 120)
     assert (ours != other).any(-1).mean() < 0.01, "but for rounding at edges of texels"
     assert ours.any(-1).all(), "no pixel is left out"
 
@@ -78,8 +85,8 @@ def test_the_same_again(renderer: Renderer):
 
 def test_ball_moves_and_boxes_hide_it(renderer: Renderer):
     pose = eye_pose((-18, 0, 0, 0, 0, 0), "left")
-    ball = SCENE.balls[0]
-    bare = Renderer(STILL, 160, 120)
+    ball = scene().balls[0]
+    bare = Renderer(still(), 160, 120)
     background = bare.render(pose, 0.0)
     sizes = []
     for time in np.arange(0, ball.lap, 0.1):
@@ -94,12 +101,12 @@ def test_ball_moves_and_boxes_hide_it(renderer: Renderer):
 
 def test_parallax(renderer: Renderer):
     """Each eye sees the ball where geometry says."""
-    place = SCENE.balls[0].place(0.06)
+    place = scene().balls[0].place(0.06)
     seen = []
     for side in ("left", "right"):
         pose = eye_pose((-18, 0, 0, 0, 0, 0), side)
         picture = renderer.render(pose, 0.06)
-        other = Renderer(STILL, 160, 120).render(pose, 0.06)
+        other = Renderer(still(), 160, 120).render(pose, 0.06)
         changed = (picture != other).any(-1)
         x, y, depth = renderer.lens.point(pose, place)
         around = changed[round(y) - 12 : round(y) + 6, round(x) - 20 : round(x) + 20]
@@ -119,5 +126,5 @@ def test_turning_the_head_moves_the_picture(renderer: Renderer):
 
 def test_odd_sizes():
     for width, height in ((17, 33), (321, 239)):
-        pixels = Renderer(SCENE, width, height).render(eye_pose(POSES[0], "left"), 1.0)
+        pixels = Renderer(scene(), width, height).render(eye_pose(POSES[0], "left"), 1.0)
         assert pixels.shape == (height, width, 3)

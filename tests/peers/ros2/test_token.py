@@ -3,8 +3,6 @@
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
-from zenoh_ros2_sdk.entity import EndpointEntity, EntityKind, NodeEntity
-from zenoh_ros2_sdk.keyexpr import endpoint_liveliness_keyexpr, node_liveliness_keyexpr
 
 from yarpy.errors import DecodeError
 from yarpy.peers.ros2.key import Key
@@ -29,6 +27,9 @@ def test_published_example() -> None:
 
 @pytest.mark.parametrize("kind", ENDPOINTS)
 def test_as_an_independent_implementation_has_them(kind: str) -> None:
+    from zenoh_ros2_sdk.entity import EndpointEntity, EntityKind, NodeEntity
+    from zenoh_ros2_sdk.keyexpr import endpoint_liveliness_keyexpr, node_liveliness_keyexpr
+
     node = NodeEntity(7, ZID, 3, "arm", "/robot/left")
     endpoint = EndpointEntity(
         node, 4, EntityKind(kind), "/robot/pose", TYPE, STRING, "2::,5:,:,:,,"

@@ -12,7 +12,6 @@ from pathlib import Path
 from typing import Any
 
 import pytest
-from support import dds_robot
 from support.process import Process
 from support.ros_graph import RosGraph, graph, graph_apart  # noqa: F401 (fixtures)
 from support.wait import HANG, wait_until
@@ -26,6 +25,7 @@ from yarpy.kits.devices.hardware.topics import TopicBoard, ros_board
 from yarpy.kits.devices.publisher import Publisher
 from yarpy.nameserver.local import LocalNames
 
+DDS_ROBOT = str(Path(__file__).parents[3] / "support" / "dds_robot.py")
 DEGREE = math.radians(1.0)
 ROS_1 = """
 import json, rospy
@@ -215,7 +215,7 @@ def test_a_robot_of_ros_2(names: LocalNames, monkeypatch: pytest.MonkeyPatch) ->
     monkeypatch.setattr(topics, "FIRST", HANG)
     monkeypatch.setattr(topics, "CONNECTED", HANG)
     states, commands = (f"/n{os.getpid()}_{what}" for what in ("states", "commands"))
-    program = [sys.executable, "-P", str(Path(dds_robot.__file__)), states, commands]
+    program = [sys.executable, "-P", DDS_ROBOT, states, commands]
     with (
         ros2.Node(f"/n{os.getpid()}", rmw="dds"),  # takes part already: that takes a while
         Process(program) as peer,

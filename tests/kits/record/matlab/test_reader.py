@@ -2,6 +2,7 @@
 `scalar`, `joints::positions`, `joints::matrix`, `ints`, `words`, and `empty` without a sample."""
 
 import json
+from importlib.util import find_spec
 from pathlib import Path
 
 import numpy as np
@@ -11,7 +12,9 @@ from yarpy import record
 from yarpy.errors import DecodeError, MissingFile
 from yarpy.kits.record.convert import convert
 
-pytest.importorskip("pymatreader")
+pytestmark = pytest.mark.skipif(
+    find_spec("pymatreader") is None, reason="files of robometry take the package pymatreader"
+)
 
 THEIRS = Path(__file__).parents[3] / "data" / "robometry"
 
