@@ -269,6 +269,20 @@ def test_wrong_targets_are_explained(out: yarpy.Port, sockets: Sockets) -> None:
     assert not out.outputs
 
 
+def test_what_does_not_go_over_tcp_is_refused(
+    out: yarpy.Port, sockets: Sockets, tmp_path: Path
+) -> None:
+    bound = sockets.make(zmq.SUB)
+    bound.bind(place := f"ipc://{tmp_path}/s")
+    for target in (place, "inproc://s", "pgm://eth0;239.1.1.1:5555"):
+        with pytest.raises(yarpy.UnknownPlugin, match=r"no carrier .*, zmq"):
+            out.connect(target)
+    for target in (f"zmq+pub://{place}", "zmq+pub://inproc://s"):
+        with pytest.raises(yarpy.UnknownName, match="HOST:NUMBER, over TCP; there is no ipc"):
+            out.connect(target)
+    assert not out.outputs
+
+
 # --------------------------------------------------------------------------------- what goes wrong
 
 

@@ -33,6 +33,7 @@ def test_nearest_name_is_suggested(names: LocalNames) -> None:
         assert 'did you mean "/camera/left"' in str(unknown("/camera/lef", names))
         assert "is its program running" in str(unknown("/something", names))
     assert "is its program running" in str(unknown("/x", None))
+    assert "HOST:NUMBER, over TCP; there is no ipc" in str(unknown("ipc:///tmp/x", None))
 
 
 @pytest.mark.parametrize("module", ["yarpy.network.asking", "yarpy.network.pairing"])

@@ -33,6 +33,8 @@ def unknown(name: str, names: object, carrier: str = "") -> UnknownName:
     except (YarpError, AttributeError):
         pass
     hint = f'did you mean "{near[0]}"?' if near else "is its program running?"
+    if "://" in name and not near:
+        hint = "an address is CARRIER://HOST:NUMBER, over TCP; there is no ipc and no inproc"
     return UnknownName(f'no port "{name}" is registered: {hint} (`yarpy name list` shows all)')
 
 
