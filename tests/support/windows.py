@@ -52,9 +52,8 @@ QUICK = (  # those that take long first
     "tests/names",
     "tests/network",
     "tests/config",
-    "tests/kits/launch/project",
 )
-LAUNCH = ("application", "document", "log", "page", "robot", "supervise")
+LAUNCH = ("application", "document", "log", "page", "project", "robot", "supervise")
 PEERS = ("peers/zmq", "peers/mqtt", "peers/ros")
 PATHS = (
     *("tests/nameserver", "tests/monitors", "tests/testing"),
