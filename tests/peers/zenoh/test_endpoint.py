@@ -282,8 +282,11 @@ def test_a_port_has_a_token_of_liveliness(client: Any) -> None:
             (port.connect if port is out else port.listen_to)(f"{target}://{key}")
             sample = seen.get(timeout=HANG)
             assert (str(sample.key_expr), sample.kind) == (key, zenoh.SampleKind.PUT)
-        found = {str(reply.ok.key_expr) for reply in tokens.get("robot/live/*")}
-        assert found == {"robot/live/put", "robot/live/asked"}
+
+        def found() -> set[str]:
+            return {str(reply.ok.key_expr) for reply in tokens.get("robot/live/*")}
+
+        wait_until(lambda: found() == {"robot/live/put", "robot/live/asked"})
     gone = [seen.get(timeout=HANG) for _ in range(2)]
     assert [sample.kind for sample in gone] == [zenoh.SampleKind.DELETE] * 2
 
