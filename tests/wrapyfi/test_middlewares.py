@@ -26,8 +26,9 @@ import yarpy
 
 pytest.importorskip("zmq")
 
-from wrapyfi.connect.wrapper import MiddlewareCommunicator
+from wrapyfi.connect.wrapper import MiddlewareCommunicator, _records
 from wrapyfi.middlewares._arrivals import Arrivals
+from wrapyfi.middlewares._side import _Side
 
 register = MiddlewareCommunicator.register
 IMAGE = np.arange(2 * 3 * 3, dtype=np.uint8).reshape(2, 3, 3)
@@ -361,10 +362,26 @@ def test_closing_ends_waiting(mware: str, mode: str, monkeypatch: pytest.MonkeyP
 
     thread = threading.Thread(target=wait, daemon=True)
     thread.start()
-    time.sleep(0.1)
-    one.close()
+    wait_until(lambda: any(one.opened for record in _records for one in record.instances))
+    one.close()  # perhaps while it opens what it waits for
     thread.join(HANG)
     assert not thread.is_alive() and ended
+
+
+def test_what_is_closed_while_it_opens_stays_closed() -> None:
+    """Also what it has opened by then."""
+    side, made = _Side(), []
+
+    def make(side: _Side) -> Any:
+        side.close()
+        made.append(types.SimpleNamespace(closed=0))
+        made[-1].close = lambda: setattr(made[-1], "closed", 1)
+        return made[-1]
+
+    for _ in range(2):
+        with pytest.raises(yarpy.PortClosed):
+            side._open(make)
+    assert [one.closed for one in made] == [1]
 
 
 def test_what_is_not_taken_goes() -> None:

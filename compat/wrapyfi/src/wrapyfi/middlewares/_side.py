@@ -92,10 +92,33 @@ def _awaited(part: Any, wanted: Callable[[], bool], looks: int | None = None) ->
     raise yarpy.PortClosed("this was closed")
 
 
-class _Sending(Publisher):
+class _Side:
+    """What is opened with its first use, and closed for good, perhaps while it is being opened."""
+
     medium: ClassVar[Medium]
     kind: ClassVar[str]
+    _opened: Any = None
+    _closed = False
 
+    def _open(self, make: Callable[[Any], Any]) -> Any:
+        """Return what `make` has opened, now or before. Raises PortClosed."""
+        if self._opened is None and not self._closed:
+            self._opened = make(self)
+        opened = self._opened
+        if self._closed or opened is None:
+            if opened is not None:
+                opened.close()
+            raise yarpy.PortClosed("this was closed")
+        return opened
+
+    def close(self) -> None:
+        self._closed, self.established = True, False
+        opened, self._opened = self._opened, None
+        if opened is not None:
+            opened.close()
+
+
+class _Sending(_Side, Publisher):
     def __init__(
         self,
         name: str,
@@ -107,26 +130,20 @@ class _Sending(Publisher):
         super().__init__(name, out_topic, carrier, should_wait, **options)
         self.options = options
         self.form = self.medium.topics[self.kind](options)
-        self._out: Any = None
 
     def establish(self, repeats: int | None = None, **kwargs: Any) -> bool:
-        self._open()
+        self._open(self.medium.out)
         found = not self.should_wait or self.await_connection(repeats=repeats)
         if not found and (repeats is None or repeats < 0):
             raise yarpy.Timeout(f'nobody listens to "{self.out_topic}"')
         return self.check_establishment(found)
 
-    def _open(self) -> Any:
-        if self._out is None:
-            self._out = self.medium.out(self)
-        return self._out
-
     def await_connection(self, *parts: Any, repeats: int | None = None, **named: Any) -> bool:
         """Wait until somebody listens: `repeats` times 0.2 s, else for WRAPYFI_TIMEOUT seconds, and
         not at all where nothing `should_wait`. What else the original takes changes nothing."""
-        out = self._open()
+        out = self._open(self.medium.out)
         looks = 0 if repeats is None and not self.should_wait else repeats
-        return _awaited(out, lambda: self._out is out, looks)
+        return _awaited(out, lambda: not self._closed, looks)
 
     def publish(self, obj: Any) -> None:
         spelled = self.form.spelled(obj)
@@ -134,19 +151,10 @@ class _Sending(Publisher):
             return
         if not self.established:
             self.establish()
-        self._out.send(spelled)
-
-    def close(self) -> None:
-        if self._out is not None:
-            self._out.close()
-            self._out = None
-        self.established = False
+        self._open(self.medium.out).send(spelled)
 
 
-class _Taking(Listener):
-    medium: ClassVar[Medium]
-    kind: ClassVar[str]
-
+class _Taking(_Side, Listener):
     def __init__(
         self,
         name: str,
@@ -158,7 +166,6 @@ class _Taking(Listener):
         super().__init__(name, in_topic, carrier, should_wait, **options)
         self.options = options
         self.form = self.medium.topics[self.kind](options)
-        self._in: Any = None
 
     def establish(self, repeats: int | None = None, **kwargs: Any) -> bool:
         self._patience = patience() if self.should_wait else 0.0
@@ -169,18 +176,16 @@ class _Taking(Listener):
 
     def await_connection(self, *parts: Any, repeats: int | None = None, **named: Any) -> bool:
         """Wait until somebody publishes, as a publisher waits until somebody listens."""
-        into = self._in
-        if into is None:
-            into = self._in = self.medium.into(self)
+        into = self._open(self.medium.into)
         looks = 0 if repeats is None and not self.should_wait else repeats
-        return _awaited(into, lambda: self._in is into, looks)
+        return _awaited(into, lambda: not self._closed, looks)
 
     def listen(self) -> Any:
         if not self.established and not self.establish():
             return self.form.nothing
         while True:
             try:
-                came = self._in.receive(self._patience)
+                came = self._open(self.medium.into).receive(self._patience)
             except yarpy.Timeout:
                 if self.should_wait:
                     raise
@@ -198,17 +203,8 @@ class _Taking(Listener):
             logging.error("[wrapyfi] %s: what came cannot be read: %s", self.in_topic, error)
             return SKIP
 
-    def close(self) -> None:
-        if self._in is not None:
-            self._in.close()
-            self._in = None
-        self.established = False
 
-
-class _Serving(Server):
-    medium: ClassVar[Medium]
-    kind: ClassVar[str]
-
+class _Serving(_Side, Server):
     def __init__(
         self,
         name: str,
@@ -221,20 +217,19 @@ class _Serving(Server):
         self.options = options
         self.form = self.medium.answers[self.kind](options)
         self._request = self.medium.topics["NativeObject"](options)
-        self._serving: Any = None
         self._answer: Callable[[Any], None] | None = None
 
     def establish(self, *args: Any, **kwargs: Any) -> bool:
-        if self._serving is None:
-            assert self.medium.serving is not None
-            self._serving = self.medium.serving(self)
+        assert self.medium.serving is not None
+        self._open(self.medium.serving)
         return self.check_establishment(True)
 
     def await_request(self, *args: Any, **kwargs: Any) -> tuple[list[Any], dict[str, Any]]:
         if not self.established:
             self.establish()
         while True:
-            came, answer = self._serving.take()
+            assert self.medium.serving is not None
+            came, answer = self._open(self.medium.serving).take()
             try:
                 found = question_of(self._request.value(came))
             except Exception as error:
@@ -260,44 +255,31 @@ class _Serving(Server):
 
     def close(self) -> None:
         self.reply(yarpy.PortClosed("the server was closed"))
-        if self._serving is not None:
-            self._serving.close()
-            self._serving = None
-        self.established = False
+        super().close()
 
 
-class _Asking(Client):
-    medium: ClassVar[Medium]
-    kind: ClassVar[str]
-
+class _Asking(_Side, Client):
     def __init__(self, name: str, in_topic: str, carrier: str = "tcp", **options: Any) -> None:
         super().__init__(name, in_topic, carrier, **options)
         self.options = options
         self.form = self.medium.answers[self.kind](options)
         self._request = self.medium.topics["NativeObject"](options)
-        self._client: Any = None
 
     def establish(self, *args: Any, **kwargs: Any) -> bool:
         self._patience = patience()
-        if self._client is None:
-            assert self.medium.asking is not None
-            self._client = self.medium.asking(self)
+        assert self.medium.asking is not None
+        self._open(self.medium.asking)
         return self.check_establishment(True)
 
     def request(self, *args: Any, **kwargs: Any) -> Any:
         spelled = self._request.spelled([args, kwargs])
         if not self.established:
             self.establish()
-        client = self._client
-        if not (client.wait(0.0) or _awaited(client, lambda: self._client is client)):
+        assert self.medium.asking is not None
+        client = self._open(self.medium.asking)
+        if not (client.wait(0.0) or _awaited(client, lambda: not self._closed)):
             raise yarpy.Timeout(f'nobody serves "{self.in_topic}"')
         return self.form.value(client.ask(spelled, self._patience))
-
-    def close(self) -> None:
-        if self._client is not None:
-            self._client.close()
-            self._client = None
-        self.established = False
 
 
 class _NoProperties:
