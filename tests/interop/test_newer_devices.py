@@ -135,7 +135,8 @@ def test_somebody_to_talk_to(newer: CppYarp) -> None:
 
 
 def test_a_language_model(newer: CppYarp) -> None:
-    place = {"name": "/cpp/rpc:i", "streaming_name": "/cpp/stream", "remote": "/ours/rpc:i"}
+    name = "/cpp/rpc:i" if newer.version < (4, 0) else "/cpp"
+    place = {"name": name, "streaming_name": "/cpp/stream", "remote": "/ours/rpc:i"}
     with (
         devices.LanguageModel.serve("/ours", devices.SimulatedLanguageModel()),
         between(newer, "LLM_nws_yarp", "LLM_nwc_yarp", **place),
@@ -230,7 +231,8 @@ def test_descriptions_of_ours(newer: CppYarp) -> None:
     device = devices.DescriptionStorage()
     device.register(EYE)
     device.register(ARM)
-    options = {"inner": "robotDescriptionClient", "local": "/between", "remote": "/ours"}
+    remote = "/ours" if newer.version < (4, 0) else "/ours/rpc"
+    options = {"inner": "robotDescriptionClient", "local": "/between", "remote": remote}
     with (
         devices.Descriptions.serve("/ours/rpc", device),
         cpp_device(newer, PATIENT, **options) as process,
@@ -246,8 +248,11 @@ def test_sticks_and_surfaces_of_cpp(newer: CppYarp) -> None:
         devices.Joypad.connect("/cpp") as client,
     ):
         assert client.stick_count() == 4 and client.stick_freedom(1) == 2
-        assert client.touch(1) == [Point(10.0, 11.0)]
-        assert (client.button(1), client.axis(1), client.hat(1)) == (10.0, 10.0, 10)
-        assert client.trackball(1) == Point(10.0, 11.0)
+        last = Point(10.0, 11.0) if newer.version < (4, 0) else Point(112.0, 113.0)
+        assert client.touch(1)[-1] == last
+        said = (10.0, 10.0, 10) if newer.version < (4, 0) else (11.0, 10.0, 12)
+        assert (client.button(1), client.axis(1), client.hat(1)) == said
+        ball = Point(10.0, 11.0) if newer.version < (4, 0) else Point(120.0, 121.0)
+        assert client.trackball(1) == ball
         with pytest.raises(LocalProtocolError, match='"/cpp" refuses touch'):
             client.touch(9)

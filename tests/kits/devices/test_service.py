@@ -33,6 +33,9 @@ def test_who_gets_which() -> None:
     assert ask(service, info, "/old") == older
     service.speaks_yarp4("/old")
     assert ask(service, info, "/old") == newer and service.knows("/old")
+    assert not service.knows("/floats")
+    service._note("/floats", True)  # it has sent a float as YARP 4 spells it
+    assert service.knows("/floats") and ask(service, info, "/floats") == newer
     for number in range(200):
         service.speaks_yarp4(f"/{number}")
     assert not service.knows("/old") and service.knows("/199")

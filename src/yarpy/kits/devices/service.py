@@ -1,8 +1,8 @@
 """Services of devices whose answers have a status in front, in the form that the asker reads.
 
-Rules: who has asked for the version is of YARP 4, or of yarpy, and gets the status of 4.0. So is
-who is known to be of YARP 4 otherwise (`speaks_yarp4`). Everybody else gets that of 3.12, whose
-programs do not ask, or what `before` makes.
+Rules: who has asked for the version is of YARP 4, or of yarpy, and gets the status of 4.0. So does
+who is known to be of YARP 4 otherwise, by `speaks_yarp4` or by the fractions that it has sent.
+Everybody else gets that of 3.12, whose programs do not ask, or what `before` makes.
 """
 
 from __future__ import annotations
@@ -32,7 +32,7 @@ class DeviceService(Service):
 
     def knows(self, source: str) -> bool:
         """Return whether the client `source` gets the status of 4.0."""
-        return source in self.__dict__.get("_known", ())
+        return source in self.__dict__.get("_known", ()) or self._is_yarp4(source)
 
     def _know(self, source: str) -> None:
         known: frozenset[str] = self.__dict__.get("_known", frozenset())

@@ -48,6 +48,7 @@ class World(Interface):
     NWS, NWC = "simulatedWorld_nws_yarp", "simulatedWorld_nwc_yarp"
     FAKE = "fakeSimulatedWorld"
     VIEW = "ISimulatedWorld"
+    ONLY_4 = True
     RPC = "rpc:i"
 
     @call("makeSphere", cpp="makeSphere")

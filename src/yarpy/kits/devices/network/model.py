@@ -151,6 +151,8 @@ class Interface:
     TOLD: ClassVar[dict[str, tuple[int, ...]]] = {}
     #: what programs before YARP 3.10 say otherwise
     OLDEST: ClassVar[Oldest | None] = None
+    #: programs before YARP 3.12 do not know it, and those of 4.0 do not say that they are
+    ONLY_4: ClassVar[bool] = False
     #: the members, by name
     members: ClassVar[dict[str, Member]] = {}
 

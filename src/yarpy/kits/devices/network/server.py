@@ -68,7 +68,8 @@ class Server(Closeable):
         with ExitStack() as resources:
             if any(each.function for each in interface.members.values()):
                 functions = functions_of(interface)(self._perform)
-                functions.before = older if newer else partial(_oldest, interface)
+                oldest_ = _same if interface.ONLY_4 else partial(_oldest, interface)
+                functions.before = older if newer else oldest_
                 functions._yarp = (3, 12, 0) if newer else (3, 10, 0)  # type: ignore[misc]
                 if interface.WORDS:
                     functions.said = self._said
@@ -188,6 +189,10 @@ class Server(Closeable):
     def _next_stamp(self) -> Stamp:
         self._stamp = self._stamp.next(clock.now())
         return self._stamp
+
+
+def _same(answer: Buffer) -> Buffer:
+    return answer
 
 
 def _oldest(interface: type[Interface], answer: Buffer) -> Buffer:
