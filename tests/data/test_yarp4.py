@@ -5,6 +5,7 @@ import sys
 from collections.abc import Iterator
 from typing import Any
 
+import numpy as np
 import pytest
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
@@ -14,10 +15,12 @@ from support.vectors import binaries
 
 from yarpy.data import codec
 from yarpy.data.bottle import Bottle
+from yarpy.data.sig.image import Image
+from yarpy.data.sig.sound import Sound
 from yarpy.data.sig.vector import Vector
 from yarpy.data.value import Float32
 from yarpy.data.walker import Walker
-from yarpy.data.yarp4 import is_yarp4, older, to_yarp3, to_yarp4
+from yarpy.data.yarp4 import is_yarp4, newest, older, to_yarp3, to_yarp4
 from yarpy.errors import DecodeError, Truncated
 
 # what is sent, as YARP 3.x spells it, and as 4.0 does
@@ -37,6 +40,37 @@ ROWS = [
      "00010000 02000000 14010000 01000000 000000000000f83f 01000000 03000000"),
     ([1, "a", [2, "b"]], None, None),
 ]  # fmt: skip
+
+
+# What `yarp write` of C++ 4.0.0 sent of these lines.
+SENT = {
+    '1 2.25 "a b" (1.5 2.5) ((1 0.5))':
+        "00010000 05000000 01000000 01000000 14000000 0000000000000240 04000000 03000000 612062"
+        "14010000 02000000 000000000000f83f 0000000000000440"
+        "00010000 01000000 00010000 02000000 01000000 01000000 14000000 000000000000e03f",
+    "[set] (a (b 1.0)) 7":
+        "00010000 03000000 09000000 73657400 00010000 02000000 04000000 01000000 61"
+        "00010000 02000000 04000000 01000000 62 14000000 000000000000f03f 01000000 07000000",
+    "0.0 (1.0 x) ()":
+        "00010000 03000000 14000000 0000000000000000"
+        "00010000 02000000 14000000 000000000000f03f 04000000 01000000 78 00010000 00000000",
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("line", SENT)
+def test_what_cpp_sent_is_what_it_is_sent(line: str) -> None:
+    sent = bytes.fromhex(SENT[line])
+    value = Bottle.from_text(line)
+    assert codec.decode_as(sent, Bottle) == value
+    assert newest((value.to_bytes(),)) == (sent,)
+    assert newest((sent,)) == (sent,)
+
+
+def test_what_is_no_bottle() -> None:
+    for blocks in ((b"",), (b"what else",), Image(np.zeros((2, 2), "uint8")).to_wire(), ()):
+        assert newest(blocks) is blocks
+    sound = Sound([[1, -2, 3], [4, 5, 6]], 16000)
+    assert b"".join(newest(sound.to_wire())) == sound.to_bottle("4.0").to_bytes()
 
 
 @pytest.mark.parametrize(("value", "three", "four"), ROWS)

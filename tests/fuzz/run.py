@@ -1,7 +1,7 @@
 """Try to break whatever reads bytes of strangers: `python tests/fuzz/run.py SECONDS [TARGET...]`.
 
 Rules: all targets in turn, with inputs that a number makes (`--seed`), so that a run can be done
-again. What raises something else than its refusals, takes a second or much memory, is put into
+again. What raises something else than its refusals, takes too long or much memory, is put into
 `tests/fuzz/corpus/TARGET/`, where the tests try it from then on. Where the system cannot tell the
 memory of one input, that of the whole process is measured. The exit code is 1 if there was
 something.
@@ -29,7 +29,6 @@ from fuzz.target import TARGETS, Target
 
 CORPUS = Path(__file__).parent / "corpus"
 TURN = 200  # inputs of one target before the next has its turn
-SLOW = 1.0  # seconds of this thread
 HANGS = 30  # seconds after which the process ends, showing where it is
 LARGE = 640 << 20  # bytes that an input takes; a JPEG may take YARPY_MAX_PICTURE twice
 MEMORY = 1 << 30  # bytes of the process
@@ -90,7 +89,7 @@ def tried(target: Target, data: bytes) -> tuple[str, float]:
     except Exception:
         problem = traceback.format_exc()
     took = time.thread_time() - start
-    if took > SLOW and not problem:
+    if took > target.slow and not problem:
         problem = f"{took:.1f} s for {len(data)} bytes"
     grown = _peak() - before
     if grown > LARGE and not problem:
@@ -126,7 +125,7 @@ def main() -> int:
     end, highest = time.monotonic() + options.seconds, 0
     while time.monotonic() < end:
         for name, target in targets.items():
-            faulthandler.dump_traceback_later(HANGS + TURN * SLOW, exit=True, file=sys.stdout)
+            faulthandler.dump_traceback_later(HANGS + TURN, exit=True, file=sys.stdout)
             start = time.monotonic()
             for _ in range(TURN):
                 data = made(chance, target)

@@ -61,6 +61,7 @@ from yarpy.kits.wrap.payload import asked, unpack
 from yarpy.kits.wrap.tensor import as_floats
 from yarpy.kits.wrap.tensor import read as read_tensor
 from yarpy.kits.wrap.tree import to_text
+from yarpy.limit import SCRIPT_SECONDS
 from yarpy.link.begin.handshake import find_carrier, recognise
 from yarpy.monitors.base import Place
 from yarpy.monitors.chain import Chain
@@ -103,12 +104,14 @@ TYPES = (
 
 @dataclass(frozen=True)
 class Target:
-    """`read` is tried; inputs are made of `seeds` that are changed, or of `pieces` in a row."""
+    """`read` is tried; inputs are made of `seeds` that are changed, or of `pieces` in a row.
+    `slow`: seconds of a processor that are too many."""
 
     read: Callable[[bytes], Any]
     seeds: tuple[bytes, ...] = ()
     pieces: tuple[bytes, ...] = ()
     refusals: tuple[type[BaseException], ...] = (YarpError,)
+    slow: float = 1.0
 
 
 def _decode_all(data: bytes) -> None:
@@ -864,6 +867,7 @@ else:
         )
         + tuple(b"PortMonitor.%s = function(t) return t end " % name for name in _CALLBACKS),
         _LUA_STATEMENTS,
+        slow=4 * SCRIPT_SECONDS,  # of each call; strings that grow, for three messages
     )
 if cv2 is not None:
     TARGETS["png"] = Target(_png, (png.encode(cv2, Image(_PIXELS)),))

@@ -7,13 +7,16 @@ import pytest
 from support.guest import guest
 from support.wait import HANG, wait_until
 
+from yarpy.data.bottle import Bottle
 from yarpy.data.stamp import Stamp
+from yarpy.data.yarp4 import to_yarp4
 from yarpy.errors import LinkClosed, Timeout
 from yarpy.nameserver.local import LocalNames
 from yarpy.port import port as port_module
 from yarpy.port.answer import admin
 from yarpy.port.dialects import Dialects
 from yarpy.port.port import BufferedPort, Port
+from yarpy.port.rpc import RpcClient, RpcServer
 
 
 @pytest.fixture
@@ -34,6 +37,35 @@ def test_ports_of_yarpy_are_of_yarp_3(source: BufferedPort, names: LocalNames) -
         assert message.value == [1.5] and message.stamp == Stamp(3, 4.5)
     source.disconnect("/in")
     wait_until(lambda: not dialects)
+
+
+@pytest.mark.parametrize("carrier", ["tcp", "fast_tcp", "udp"])
+def test_a_plain_port_writes_as_its_reader_reads(carrier: str, names: LocalNames) -> None:
+    """A reader of YARP 3 beside one of YARP 4."""
+    with (
+        Port("/out", names=names) as out,
+        BufferedPort("/old", strict=True, names=names) as old,
+        BufferedPort("/new", strict=True, names=names) as new,
+    ):
+        out.connect("/old", carrier)
+        out.connect("/new", carrier)
+        out._hub.outputs.links[1].route.yarp4 = True
+        for value in ([1.5], ["the same"]):
+            out.write(value)
+            assert old.read(HANG).to_bytes() == Bottle(value).to_bytes()
+            assert new.read(HANG).to_bytes() == to_yarp4(Bottle(value).to_bytes())
+        assert to_yarp4(Bottle([1.5]).to_bytes()) != Bottle([1.5]).to_bytes()
+
+
+def test_questions_too(names: LocalNames) -> None:
+    asked: list[bytes] = []
+    with (
+        RpcServer("/server", lambda message: asked.append(message.to_bytes()), names=names),
+        RpcClient("/server", names=names) as client,
+    ):
+        client._hub.outputs.links[0].route.yarp4 = True
+        client.call(1.5, timeout=HANG)
+    assert asked == [to_yarp4(Bottle([1.5]).to_bytes())]
 
 
 def test_who_knows_no_yarp_is_not_asked_which(

@@ -134,7 +134,7 @@ _SINCE: Final = (
 #: What only boards of 4.0 have.
 _BOARD_4: Final = ("IJointBrake", "IVelocityDirect")
 #: What was not tried with 4.0.0.
-_NOT_4: Final = ("AnalogSensor", "AudioPlayer", "Joypad", "VirtualAnalogServer")
+_NOT_4: Final = ("AnalogSensor", "Joypad", "VirtualAnalogServer")
 
 _ALONE: Final = "C++ has no server or client of it: it stays within a program"
 _OLD: Final = "C++ has none of it any more"

@@ -24,10 +24,12 @@ from yarpy.data.value import (
     FLOAT32,
     FLOAT64,
     GROUP_MASK,
+    INT16,
     LIST,
     MAX_DEPTH,
     STRING,
     UNIT_MASK,
+    VOCAB32,
     Buffer,
 )
 from yarpy.errors import DecodeError, Truncated
@@ -58,6 +60,13 @@ _KINDS: Final = frozenset((*WIDTHS_3, *WIDTHS_4, STRING, BLOB))
 #: every word that can stand where a tag belongs
 _TAGS: Final = _KINDS | {LIST, LIST | DICT} | {LIST + kind for kind in _KINDS}
 
+#: how images begin
+_IMAGE: Final = Struct("<3i4s").pack(LIST, 4, VOCAB32, b"mat\0")
+#: a Sound of 3.9, one of 4.0, and its empty list of markers
+_SOUND: Final = Struct("<10i")
+_NEW_SOUND: Final = Struct("<12i")
+_MARKERS: Final = Struct("<2i").pack(LIST, 0)
+
 _i32 = Struct("<i").unpack_from
 _word = Struct("<i").pack
 
@@ -71,6 +80,24 @@ def to_yarp4(data: Buffer) -> Buffer:
 def to_yarp3(data: Buffer) -> Buffer:
     """A message of 4.0 as 3.x spells it; as `to_yarp4`."""
     return _Walk(data, WIDTHS_4, TO_3).renamed()
+
+
+def newest(blocks: tuple[Buffer, ...]) -> tuple[Buffer, ...]:
+    """A message in pieces, whatever it is, as 4.0 spells it; the same object if that is no other.
+    Images, which have no floats in front of their pixels, are not looked through."""
+    if blocks and bytes(blocks[0][: len(_IMAGE)]) == _IMAGE:
+        return blocks
+    data = b"".join(blocks)
+    if len(data) >= _SOUND.size:
+        kind, size, zero, samples, *rest = _SOUND.unpack_from(data)
+        if (kind, size, zero) == (LIST, 4, 0):
+            head = (LIST, 6, 1, samples, *rest, LIST + INT16, (len(data) - _SOUND.size) // 2)
+            return _NEW_SOUND.pack(*head), data[_SOUND.size :], _MARKERS
+    try:
+        other = data if is_yarp4(data) else to_yarp4(data)
+    except DecodeError:
+        return blocks
+    return blocks if other is data else (other,)
 
 
 def older(data: Buffer) -> Buffer | None:

@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, Any, Final, Generic, Literal, Self, TypeAlias,
 from yarpy.data import codec
 from yarpy.data.bottle import Bottle
 from yarpy.data.value import Vocab
+from yarpy.data.yarp4 import newest
 from yarpy.errors import DecodeError, LocalProtocolError
 
 if TYPE_CHECKING:
@@ -134,6 +135,17 @@ class Packet:
                 mark_unsent(error)
                 raise
         return self._blocks
+
+    @property
+    def newest(self) -> Packet:
+        """The packet as YARP 4 spells it; itself if that is no other."""
+        if "newest" not in self.forms:
+            blocks = newest(self.blocks)
+            other = None if blocks is self.blocks else Packet(self.value, self.envelope, self.key)
+            if other is not None:
+                other._blocks = blocks
+            self.forms["newest"] = other
+        return self.forms["newest"] or self
 
     def snapshot(self, spelling: Spelling) -> None:
         """Encode now, into memory of our own: the message leaves later, and its writer goes on

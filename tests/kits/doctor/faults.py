@@ -359,9 +359,9 @@ def clock_skew(world: World) -> Iterator[tuple[str, ...]]:
     yield ("/talker", "/listener")
 
 
-@fault("two-dialects", "the receiver is a port of C++ YARP 4")
+@fault("two-dialects", "the sender is a port of C++ YARP 3, the receiver one of C++ YARP 4")
 def two_dialects(world: World) -> Iterator[tuple[str, ...]]:
-    """It answers as that does; none that is installed here is so new."""
+    """They answer as those do."""
     talker = world.open("/talker")
     listener = world.open("/listener", callback=lambda message: None)
     talker.connect("/listener")
@@ -369,6 +369,8 @@ def two_dialects(world: World) -> Iterator[tuple[str, ...]]:
     listener._hub.callbacks.node = lambda request: (
         unheard if str(request[0]) in ("bus", "stat") else None
     )
+    told = {"bus": yarpy.Bottle([1, "", []]), "stat": unheard}
+    talker._hub.callbacks.node = lambda request: told.get(str(request[0]))
     world.again(lambda: talker.write([1.5]))
     yield ("/talker", "/listener")
 

@@ -194,9 +194,12 @@ def test_a_silent_program_at_a_port_s_number_gets_nothing(
 def test_confirming(names: LocalNames) -> None:
     with Port("/here", names=names) as port:
         contact = port.contact
-        assert identity.confirm(contact, names.get, b"") == "/here"
-        assert identity.confirm(Contact("mjpeg", "/here", "127.0.0.1", 1), names.get, b"") == ""
-        assert identity.confirm(Contact("tcp", "", "127.0.0.1", 1), names.get, b"") == ""
+        assert identity.confirm(contact, names.get, b"") == ("/here", False)
+        assert identity.confirm(Contact("mjpeg", "/here", "127.0.0.1", 1), names.get, b"") == (
+            "",
+            False,
+        )
+        assert identity.confirm(Contact("tcp", "", "127.0.0.1", 1), names.get, b"") == ("", False)
         route = Route("/x", "/here", "tcp", peer="/here")
         identity.confirm_again(contact, route, b"")
         route.peer = "/there"

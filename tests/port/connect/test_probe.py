@@ -66,6 +66,42 @@ def cpp(sock: socket.socket) -> None:
         file.readline()
 
 
+UNKNOWN = b'[fail] "send [help] for list of valid commands"\r\n<ACK>\r\n'
+
+
+def of_cpp(bus: bytes) -> Callable[[socket.socket], None]:
+    """What a port of C++ was recorded to say, 4.0.0 or an older one."""
+
+    def talk(sock: socket.socket) -> None:
+        said = (
+            b"This is /it at tcp://127.0.0.1:1/\r\nThere are no outgoing connections\r\n<ACK>\r\n"
+        )
+        file = sock.makefile("rb")
+        file.read(len(b"CONNACK admin\r\n*\r\na\r\n[stat] in ?\r\n"))
+        sock.sendall(b"Welcome admin\r\n" + said + UNKNOWN)
+        if file.read(len(b"a\r\n[bus]\r\n")) == b"a\r\n[bus]\r\n":
+            sock.sendall(bus)
+
+    return talk
+
+
+def says_no_more(sock: socket.socket) -> None:
+    sock.sendall(b"Welcome admin\r\nThis is /it at tcp://127.0.0.1:1/\r\n")
+    silent(sock)
+
+
+def test_who_is_of_yarp_4(names: LocalNames, monkeypatch: pytest.MonkeyPatch) -> None:
+    with Port("/it", names=names) as port:
+        assert probe.who(port.contact) == ("/it", False)
+    with impostor(of_cpp(UNKNOWN)) as contact:
+        assert probe.who(contact) == ("/it", True)
+    with impostor(of_cpp(b'1 "" (())\r\n<ACK>\r\n')) as contact:
+        assert probe.who(contact) == ("/it", False)
+    monkeypatch.setattr(probe, "VERSION", 0.05)
+    with impostor(says_no_more) as contact:
+        assert probe.who(contact) == ("/it", False)
+
+
 def test_port_answers(names: LocalNames) -> None:
     with Port("/it", names=names) as port:
         contact = port.contact

@@ -19,9 +19,11 @@ def find(case: Case) -> Iterator[Finding]:
         for name in (pair.source, pair.target):
             if name not in spoken:
                 spoken[name] = case.dialect(name)
-        state = case.port(pair.target)
-        if state is not None and state.ours:
+        reader, writer = case.port(pair.target), case.port(pair.source)
+        if reader is not None and reader.ours:
             continue  # which reads both
+        if writer is not None and writer.ours and pair.carrier != "mcast":
+            continue  # which writes as its reader reads; a group may have readers of both
         source, target = spoken[pair.source], spoken[pair.target]
         if source and target and source != target:
             new = pair.source if source == 4 else pair.target

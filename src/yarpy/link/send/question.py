@@ -38,7 +38,8 @@ def exchange(
         value = packet.value
         end = None if type(value) in LISTS else getattr(value, "reply_end", None)
         carrier.reply_end = end
-        carrier.encode(stream, packet)
+        newest = sender.route.yarp4 and sender.respells
+        carrier.encode(stream, packet.newest if newest else packet)
         if (sender.gathered or not driver.push()) and not sender.flush(until):
             raise Timeout("the peer does not read what is sent")
         if carrier.ping[1]:

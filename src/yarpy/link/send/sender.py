@@ -63,6 +63,8 @@ class Sender:
         self.carrier = carrier
         self.route: Route = carrier.route
         self.counter = Counter(since=time.time())
+        #: the reader may be of YARP 4; a group of them may be of both
+        self.respells = carrier.spelling == "binary" and not carrier.delivery.broadcast
         self.chain: Chain | None = None  # the monitors that ride on it
         self.late = 0  # messages that were not sent since their deadline had come
         lock: Any = threading.RLock()
@@ -120,6 +122,8 @@ class Sender:
             if (full or self.halfway) and not self._make_room(bool(full), until):
                 return NOTHING  # before any work on it
             gathered, gone = self.gathered, driver.bytes_out
+            if self.route.yarp4 and self.respells:
+                packet = packet.newest
             carrier.encode(driver.stream, packet)
             pause = now - self._left
             if pause > RUSH * self._cost and not self.more:

@@ -314,11 +314,11 @@ def _greet(
 ) -> tuple[Driver, Carrier]:
     """Open the connection, once the listener is known to be the port that is meant."""
     if lost is not None and lost.peer:
-        identity.confirm_again(contact, lost, hub.key, timeout)
-        route.peer = lost.peer
+        found = identity.confirm_again(contact, lost, hub.key, timeout)
     else:
         known = identity.properties_of(hub.service())
-        route.peer = identity.confirm(contact, known, hub.key, timeout, secure=route.spec.in_tls)
+        found = identity.confirm(contact, known, hub.key, timeout, secure=route.spec.in_tls)
+    route.peer, route.yarp4 = found
     return greet(
         contact,
         route,

@@ -32,20 +32,20 @@ def confirm(
     key: bytes,
     timeout: float | None = None,
     secure: bool = False,
-) -> str:
-    """The name of the port that listens where `contact.name` should; "" if it cannot say.
+) -> probe.Listener:
+    """What the port that listens where `contact.name` should says of itself.
 
     Raises WrongPort (another port), LinkClosed (nobody listens), Timeout (it is silent).
     """
     if not contact.name or contact.carrier not in ("", "tcp"):
-        return ""
+        return probe.Listener()
     try:
         found = probe.who(contact, timeout or TIMEOUT, key, secure)
     except Timeout:
         if _by_hand(contact.name, properties):
-            return ""
+            return probe.Listener()
         raise
-    judge(contact, found, properties)
+    judge(contact, found.name, properties)
     return found
 
 
@@ -55,11 +55,14 @@ def judge(contact: Contact, found: str, properties: Properties | None) -> None:
         raise probe.another_port(contact, contact.name, found)
 
 
-def confirm_again(contact: Contact, route: Route, key: bytes, timeout: float | None = None) -> None:
+def confirm_again(
+    contact: Contact, route: Route, key: bytes, timeout: float | None = None
+) -> probe.Listener:
     """As `confirm`, for the peer that `route` had before it broke."""
     found = probe.who(contact, timeout or TIMEOUT, key, route.spec.in_tls)
-    if found != route.peer:
-        raise probe.another_port(contact, route.peer, found)
+    if found.name != route.peer:
+        raise probe.another_port(contact, route.peer, found.name)
+    return found
 
 
 def has_proof(route: Route) -> bool:
@@ -80,7 +83,8 @@ def learn(contact: Contact, route: Route, key: bytes) -> None:
 
     def ask() -> None:
         try:
-            route.peer = route.peer or probe.who(contact, TIMEOUT, key, route.spec.in_tls)
+            if not route.peer:
+                route.peer, route.yarp4 = probe.who(contact, TIMEOUT, key, route.spec.in_tls)
         except YarpError:
             pass  # it cannot say
 

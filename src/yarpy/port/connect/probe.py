@@ -14,7 +14,7 @@ import math
 import time
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
-from typing import Final, Self
+from typing import Final, NamedTuple, Self
 
 from yarpy import registry, scope
 from yarpy.carriers.auth import prove_initiator
@@ -37,6 +37,10 @@ from yarpy.wire.stream import ByteStream
 ANONYMOUS: Final = "anon_rpc"  # the name C++ tools give themselves
 TIMEOUT = 3.0  # seconds; a port that lives answers in milliseconds
 _LONGEST: Final = 4096  # bytes of a line with one name or two in it
+#: the answer of C++ to an administrative command that it does not know
+_UNKNOWN: Final = b'[fail] "send [help] for list of valid commands"'
+_ACKNOWLEDGED: Final = b"<ACK>"
+VERSION: Final = 1.0  # seconds to tell it, behind the name
 
 
 def ask(
@@ -101,13 +105,20 @@ def describe(
     return _lines(contact, "*", name, timeout, secret_)
 
 
+class Listener(NamedTuple):
+    """What a port says of itself. name: "" if it cannot say. yarp4: it is of C++ YARP 4."""
+
+    name: str = ""
+    yarp4: bool = False
+
+
 def who(
     contact: Contact,
     timeout: float = TIMEOUT,
     secret_: bytes | None = None,
     secure: bool = False,
-) -> str:
-    """The name that the port at `contact` gives itself; "" if what listens there cannot say.
+) -> Listener:
+    """What the port at `contact` says of itself.
 
     `secure`: it is asked in TLS.
 
@@ -121,24 +132,47 @@ def who(
         with scope.waking(lambda: driver.transport.interrupt()):
             if key:
                 driver.run(prove_initiator(driver.stream, key), min(deadline, _deadline(PROVING)))
-            return driver.run(_introduction(driver.stream), deadline)
+            name = driver.run(_introduction(driver.stream), deadline)
+            return Listener(name, bool(name) and _speaks_yarp4(driver, deadline))
     except Timeout as error:
         raise Timeout(
             f"what listens at {contact.address} does not say who it is; its program may be stopped "
             "or busy"
         ) from error
     except (YarpError, OSError):
-        return ""  # no YARP port, or one with another key
+        return Listener()  # no YARP port, or one with another key
     finally:
         driver.transport.close()
 
 
 def _introduction(stream: ByteStream) -> Steps[str]:
-    stream.write(b"CONNACK admin\r\n*\r\n")
+    """Its name, which it says first when it describes itself. What tells its version follows."""
+    stream.write(b"CONNACK admin\r\n*\r\na\r\n[stat] in ?\r\n")
     welcome = yield from stream.read_line(_LONGEST)
     if not welcome.startswith(b"Welcome"):
         return ""
     return _own_name((yield from stream.read_line(_LONGEST)).decode("utf-8", "replace"))
+
+
+def _speaks_yarp4(driver: Driver, deadline: float) -> bool:
+    """Return whether it is of C++ YARP 4; whoever does not say so is not."""
+    try:
+        return driver.run(_version_known(driver.stream), min(deadline, _deadline(VERSION)))
+    except (YarpError, OSError):
+        return False
+
+
+def _version_known(stream: ByteStream) -> Steps[bool]:
+    """Ports of yarpy alone know [stat]; [bus], which would load ROS there, all others but those of
+    YARP 4."""
+    while (yield from stream.read_line(_LONGEST)) != _ACKNOWLEDGED:
+        pass  # the rest of the description
+    if (yield from stream.read_line(_LONGEST)) != _UNKNOWN:
+        return False
+    while (yield from stream.read_line(_LONGEST)) != _ACKNOWLEDGED:
+        pass
+    stream.write(b"a\r\n[bus]\r\n")
+    return (yield from stream.read_line(_LONGEST)) == _UNKNOWN
 
 
 def _own_name(line: str) -> str:
@@ -201,7 +235,7 @@ def drop_output(
 def is_alive(contact: Contact, key: bytes = b"") -> bool:
     """Return whether the port of that name answers at that address."""
     try:
-        return who(contact, secret_=key) == contact.name
+        return who(contact, secret_=key).name == contact.name
     except YarpError:
         return False
 
