@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import time
 from collections.abc import Sequence
-from types import SimpleNamespace
 
 import pytest
 
@@ -107,8 +106,7 @@ def test_silence_and_a_failing_send() -> None:
 def test_a_wait_ends_at_its_deadline_and_not_before(monkeypatch: pytest.MonkeyPatch) -> None:
     """Long waits are made of two, since the system is late by a part of each."""
     now = [100.0]
-    clock = SimpleNamespace(monotonic=lambda: now[0])
-    monkeypatch.setattr("yarpy.link.driver.time", clock)
+    monkeypatch.setattr(time, "monotonic", lambda: now[0])
 
     class Asleep(Table):
         def receive(self, wait: bool = True) -> tuple[object] | None:

@@ -260,14 +260,14 @@ def test_a_timed_read_ends_also_where_a_timer_interrupts_it(
     main: bool, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """Signals come to the main thread, and a limit of the system begins anew behind each."""
-    monkeypatch.setattr("yarpy.link.receive.turn.AWAY", HANG)
+    monkeypatch.setattr(turn, "AWAY", HANG)
     with linked() as (near, link, _):
-        driver, limits = link.receiver.driver, list[float | None]()
-        fill = driver.fill
+        transport, limits = link.receiver.driver.transport, list[float]()
+        wait_readable = transport.wait_readable
 
-        def noted(deadline: float | None = None) -> None:
-            limits.append(deadline)
-            fill(deadline)
+        def noted(seconds: float) -> bool:
+            limits.append(seconds)
+            return wait_readable(seconds)
 
         def wait() -> None:
             assert read(link, time.monotonic() + 60) is None
@@ -277,13 +277,13 @@ def test_a_timed_read_ends_also_where_a_timer_interrupts_it(
         link.turn.ask(threading.get_ident())
         near.sendall(message([1]))
         wait_until(lambda: link.turn.leased)
-        monkeypatch.setattr(driver, "fill", noted)
+        monkeypatch.setattr(transport, "wait_readable", noted)
         if main:
             wait()
         else:
             thread.start()
             thread.join(HANG)
-        assert bool(limits[0]) is main
+        assert bool(limits) is main and all(limit <= turn.SILENCE for limit in limits)
 
 
 def test_borrower_that_wants_the_newest_gets_the_last_of_those_that_are_there() -> None:

@@ -28,7 +28,7 @@ log = logger("yarpy.link")
 
 # In messages, bytes, seconds.
 WINDOW_BYTES: Final = 1 << 16
-WINDOW_SECONDS: Final = 0.005
+WINDOW_SECONDS = 0.005
 ASK_EVERY: Final = 32  # messages after which acknowledgements are looked for
 MOST: Final = 128  # messages at a time to a reader that takes the newest at once
 
