@@ -28,7 +28,7 @@ from yarpy.link.begin.handshake import recognise
 from yarpy.link.receive import turn
 from yarpy.link.receive.inbound import Inbound
 from yarpy.route import Route
-from yarpy.transports.base import SocketTransport
+from yarpy.transports.base import MSG_DONTWAIT, SocketTransport
 from yarpy.wire import framing
 from yarpy.wire.message import QUIT as QUIT_COMMAND
 from yarpy.wire.message import Message
@@ -255,6 +255,7 @@ def test_nobody_else_writes_while_a_question_is_open() -> None:
         assert near.recv(1) == b""
 
 
+@pytest.mark.skipif(not MSG_DONTWAIT, reason="nothing interrupts a wait of Windows")
 @pytest.mark.parametrize("main", [True, False])
 def test_a_timed_read_ends_also_where_a_timer_interrupts_it(
     main: bool, monkeypatch: pytest.MonkeyPatch
