@@ -107,7 +107,7 @@ def test_ports_register_again(cpp: CppYarp, server: CppYarp) -> None:
         for turn in range(2):
             server.server_process.kill()
             a.write([turn])
-            assert reader.read(timeout=5).value == [turn], "a stream does not need the server"
+            assert reader.read(timeout=HANG).value == [turn], "a stream does not need the server"
             with cpp.server(port=server.port) as again:
                 for name, address in addresses.items():
                     wait_until(lambda: yarpy.query(name) == address, what=name)  # noqa: B023
@@ -124,7 +124,7 @@ def test_ports_register_again(cpp: CppYarp, server: CppYarp) -> None:
                     )
                     assert peer.do("yarp.Network.connect(name, '/c')")
                     peer.do("port.write(yarp.Bottle('hello'))")
-                    assert reader.read(timeout=5).value == ["hello"]
+                    assert reader.read(timeout=HANG).value == ["hello"]
         with cpp.server(port=server.port) as again:
             wait_until(lambda: yarpy.query("/c") is not None, what="/c is registered")
             reader.close()
