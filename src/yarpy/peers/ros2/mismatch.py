@@ -1,4 +1,4 @@
-"""Who is at our topic with another type, told in the log.
+"""Warnings in the log of others at our topic with another type.
 
 Rules: each node is told of once for each type, and not more than `MOST_TOLD` in all. Where somebody
 has the same type without saying which version, it counts as ours.

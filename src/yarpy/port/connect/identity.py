@@ -33,7 +33,7 @@ def confirm(
     timeout: float | None = None,
     secure: bool = False,
 ) -> probe.Listener:
-    """What the port that listens where `contact.name` should says of itself.
+    """Return what the port that listens where `contact.name` should says of itself.
 
     Raises WrongPort (another port), LinkClosed (nobody listens), Timeout (it is silent).
     """

@@ -106,7 +106,7 @@ def describe(
 
 
 class Listener(NamedTuple):
-    """What a port says of itself. name: "" if it cannot say. yarp4: it is of C++ YARP 4."""
+    """The answers of a port about itself. name: "" if it has none. yarp4: it is of C++ YARP 4."""
 
     name: str = ""
     yarp4: bool = False
@@ -118,7 +118,7 @@ def who(
     secret_: bytes | None = None,
     secure: bool = False,
 ) -> Listener:
-    """What the port at `contact` says of itself.
+    """Return what the port at `contact` says of itself.
 
     `secure`: it is asked in TLS.
 

@@ -93,7 +93,7 @@ def _awaited(part: Any, wanted: Callable[[], bool], looks: int | None = None) ->
 
 
 class _Side:
-    """What is opened with its first use, and closed for good, perhaps while it is being opened."""
+    """One end, opened with its first use and closed for good, perhaps while it is being opened."""
 
     medium: ClassVar[Medium]
     kind: ClassVar[str]

@@ -1,4 +1,4 @@
-"""Who else comes to a topic over DDS, as soon as the library knows.
+"""News of others that come to a topic over DDS, as soon as the library knows.
 
 Rules: those who are there are told of, too. The library's readers of such news are made for the
 first topic that is watched; each has its own news, so nobody else takes them away.
