@@ -1,11 +1,11 @@
 """Readers of YARP 3 and of YARP 4 at one port: each gets its own, nothing before it is known."""
 
 import threading
-from types import SimpleNamespace
 
 import pytest
 from support.guest import guest
 from support.wait import HANG, wait_until
+from support.yarp4 import administer_as_yarp4
 
 from yarpy.data.bottle import Bottle
 from yarpy.data.stamp import Stamp
@@ -13,7 +13,6 @@ from yarpy.data.yarp4 import to_yarp4
 from yarpy.errors import LinkClosed, Timeout
 from yarpy.nameserver.local import LocalNames
 from yarpy.port import port as port_module
-from yarpy.port.answer import admin
 from yarpy.port.dialects import Dialects
 from yarpy.port.port import BufferedPort, Port
 from yarpy.port.rpc import RpcClient, RpcServer
@@ -125,8 +124,7 @@ def test_how_it_is_found_out(
 ) -> None:
     with Port("/in", names=names):
         assert source._is_yarp4("/in") is False
-        # YARP 4 has no commands of ROS.
-        monkeypatch.setattr(admin, "graphs", SimpleNamespace(call=lambda name: None))
+        administer_as_yarp4(monkeypatch)
         assert source._is_yarp4("/in") is True
     with pytest.raises(LinkClosed):
         source._is_yarp4("/127.0.0.1:9")

@@ -7,9 +7,13 @@ import threading
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
+from types import SimpleNamespace
 from typing import Any
 
+import pytest
+
 import yarpy
+from yarpy.port.answer import admin
 from yarpy.wire.message import CALL, Encoded, Message
 
 _FOLDER = Path(__file__).parent.parent / "golden"
@@ -39,6 +43,12 @@ class Replay:
 
     def close(self) -> None:
         """Nothing to do."""
+
+
+def administer_as_yarp4(patch: pytest.MonkeyPatch) -> None:
+    """Let ports know those administrative commands alone that C++ YARP 4 knows."""
+    patch.setattr(admin, "graphs", SimpleNamespace(call=lambda name: None))  # none of ROS
+    patch.delitem(admin._HANDLERS, "stat")
 
 
 @contextmanager

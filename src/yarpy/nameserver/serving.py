@@ -171,7 +171,7 @@ class Serving:
         if self._is_here(contact.host) and not is_taken(contact.port):
             return False
         try:
-            return probe.who(contact, BUSY, secret()).name == contact.name
+            return probe.who(contact, BUSY, secret()) == contact.name
         except Timeout:
             return True
         except (YarpError, OSError) as error:

@@ -195,7 +195,7 @@ class MessagePort(BasePort, Generic[T]):
         hub = self._hub
         with hub.life.calls.scope(ASKING if timeout is None else timeout):
             contact = hub.registration.locate(parse_contact(target))
-            return contact is not None and probe.is_yarp4(contact, secret_=hub.key)
+            return contact is not None and probe.introduce(contact, secret_=hub.key).yarp4
 
     def _send(self, packet: Packet, links: tuple[Outbound, ...]) -> int:
         """Send a packet over some of the connections; as `write`."""

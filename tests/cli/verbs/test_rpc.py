@@ -1,15 +1,13 @@
 """`yarpy rpc`."""
 
-from types import SimpleNamespace
-
 import pytest
 from support.ros2_peer import ros2_router
+from support.yarp4 import administer_as_yarp4
 
 import yarpy
 from yarpy.cli.verbs.rpc import Target, commands_of, many, print_reply
 from yarpy.data.yarp4 import is_yarp4
 from yarpy.kits.devices import ControlBoardServer
-from yarpy.port.answer import admin
 
 
 @pytest.fixture(scope="module")
@@ -185,7 +183,7 @@ def test_nothing_is_asked_of_another_port(cli, names, server_port):
 
 
 def test_a_port_of_yarp_4_gets_its_spelling(here, names, monkeypatch):
-    """It has no commands of ROS any more, by which it is known."""
+    """It knows the commands of no older YARP and none of ours, by which it is known."""
     heard = []
 
     def answer(message):
@@ -196,7 +194,7 @@ def test_a_port_of_yarp_4_gets_its_spelling(here, names, monkeypatch):
         target = Target("/rpc/newer")
         assert target.ask(yarpy.Bottle(["f", 1.5, [2.5]])) == ["f", 1.5, [2.5]]
         target.close()
-        monkeypatch.setattr(admin, "graphs", SimpleNamespace(call=lambda name: None))
+        administer_as_yarp4(monkeypatch)
         target = Target("/rpc/newer")
         assert target.ask(yarpy.Bottle(["f", 1.5, [2.5]])) == ["f", 1.5, [2.5]]
         assert target.ask(yarpy.Bottle(["f", 1])) == ["f", 1]

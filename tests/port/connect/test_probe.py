@@ -92,14 +92,27 @@ def says_no_more(sock: socket.socket) -> None:
 
 def test_who_is_of_yarp_4(names: LocalNames, monkeypatch: pytest.MonkeyPatch) -> None:
     with Port("/it", names=names) as port:
-        assert probe.who(port.contact) == ("/it", False)
+        assert probe.introduce(port.contact) == ("/it", False)
     with impostor(of_cpp(UNKNOWN)) as contact:
-        assert probe.who(contact) == ("/it", True)
+        assert probe.introduce(contact) == ("/it", True)
     with impostor(of_cpp(b'1 "" (())\r\n<ACK>\r\n')) as contact:
-        assert probe.who(contact) == ("/it", False)
+        assert probe.introduce(contact) == ("/it", False)
     monkeypatch.setattr(probe, "VERSION", 0.05)
     with impostor(says_no_more) as contact:
-        assert probe.who(contact) == ("/it", False)
+        assert probe.introduce(contact) == ("/it", False)
+
+
+def test_no_more_is_asked_than_the_name() -> None:
+    heard: list[bytes] = []
+
+    def listens(sock: socket.socket) -> None:
+        sock.sendall(b"Welcome admin\r\nThis is /it at tcp://127.0.0.1:1/\r\n")
+        while data := sock.recv(100):
+            heard.append(data)
+
+    with impostor(listens) as contact:
+        assert probe.who(contact) == "/it"
+    assert b"".join(heard) == b"CONNACK admin\r\n*\r\n"
 
 
 def test_port_answers(names: LocalNames) -> None:

@@ -99,7 +99,7 @@ class Target:
     def _spelled(self, question: Any) -> Any:
         """The question as the target reads it: YARP 4 has other tags for fractions."""
         from yarpy.data.yarp4 import to_yarp4
-        from yarpy.port.connect.probe import is_yarp4
+        from yarpy.port.connect.probe import introduce
         from yarpy.wire.message import Encoded
 
         data = yarpy.Bottle(question).to_bytes()
@@ -109,7 +109,7 @@ class Target:
         if self._yarp4 is None:
             self._yarp4 = False
             with suppress(YarpError, OSError):
-                self._yarp4 = self._contact is not None and is_yarp4(self._contact)
+                self._yarp4 = self._contact is not None and introduce(self._contact).yarp4
         return Encoded(newer) if self._yarp4 else question
 
     def _hang_up(self) -> None:

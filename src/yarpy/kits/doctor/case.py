@@ -134,7 +134,7 @@ class Case:
         if not contact.reachable:
             return contact.name if contact.name.startswith("/") else f"/{contact.name}"
         try:
-            return contact.name or probe.who(contact, TIMEOUT, secret()).name or contact.label
+            return contact.name or probe.who(contact, TIMEOUT, secret()) or contact.label
         except (YarpError, OSError):
             return contact.label
 
@@ -226,7 +226,7 @@ class Case:
         if state is None:
             return ""
         try:
-            return probe.who(state.contact, TIMEOUT, secret()).name
+            return probe.who(state.contact, TIMEOUT, secret())
         except (YarpError, OSError):
             return ""
 

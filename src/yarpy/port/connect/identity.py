@@ -40,7 +40,7 @@ def confirm(
     if not contact.name or contact.carrier not in ("", "tcp"):
         return probe.Listener()
     try:
-        found = probe.who(contact, timeout or TIMEOUT, key, secure)
+        found = probe.introduce(contact, timeout or TIMEOUT, key, secure)
     except Timeout:
         if _by_hand(contact.name, properties):
             return probe.Listener()
@@ -59,7 +59,7 @@ def confirm_again(
     contact: Contact, route: Route, key: bytes, timeout: float | None = None
 ) -> probe.Listener:
     """As `confirm`, for the peer that `route` had before it broke."""
-    found = probe.who(contact, timeout or TIMEOUT, key, route.spec.in_tls)
+    found = probe.introduce(contact, timeout or TIMEOUT, key, route.spec.in_tls)
     if found.name != route.peer:
         raise probe.another_port(contact, route.peer, found.name)
     return found
@@ -84,7 +84,7 @@ def learn(contact: Contact, route: Route, key: bytes) -> None:
     def ask() -> None:
         try:
             if not route.peer:
-                route.peer, route.yarp4 = probe.who(contact, TIMEOUT, key, route.spec.in_tls)
+                route.peer, route.yarp4 = probe.introduce(contact, TIMEOUT, key, route.spec.in_tls)
         except YarpError:
             pass  # it cannot say
 

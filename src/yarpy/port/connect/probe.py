@@ -12,9 +12,9 @@ from __future__ import annotations
 
 import math
 import time
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
-from typing import Final, NamedTuple, Self
+from typing import Final, NamedTuple, Self, TypeVar
 
 from yarpy import registry, scope
 from yarpy.carriers.auth import prove_initiator
@@ -34,9 +34,14 @@ from yarpy.wire.message import ADMIN, CALL, Message, Packet
 from yarpy.wire.steps import Steps
 from yarpy.wire.stream import ByteStream
 
+Answer = TypeVar("Answer")
+
 ANONYMOUS: Final = "anon_rpc"  # the name C++ tools give themselves
 TIMEOUT = 3.0  # seconds; a port that lives answers in milliseconds
 _LONGEST: Final = 4096  # bytes of a line with one name or two in it
+# [stat]: only ports of yarpy know it; [bus], which would load ROS there: all others but YARP 4.
+_STAT: Final = b"a\r\n[stat] in ?\r\n"
+_BUS: Final = b"a\r\n[bus]\r\n"
 #: the answer of C++ to an administrative command that it does not know
 _UNKNOWN: Final = b'[fail] "send [help] for list of valid commands"'
 _ACKNOWLEDGED: Final = b"<ACK>"
@@ -117,14 +122,48 @@ def who(
     timeout: float = TIMEOUT,
     secret_: bytes | None = None,
     secure: bool = False,
-) -> Listener:
-    """Return what the port at `contact` says of itself.
+) -> str:
+    """Return the name that the port at `contact` gives itself; "" if it is no YARP port.
 
     `secure`: it is asked in TLS.
 
     Everything is said at once, so that it costs one journey there and back. Raises LinkClosed
     (nobody listens there), Timeout (it is silent).
     """
+
+    def ask(driver: Driver, deadline: float) -> str:
+        return driver.run(_introduction(driver.stream), deadline)
+
+    return _meet(contact, ask, "", timeout, secret_, secure)
+
+
+def introduce(
+    contact: Contact,
+    timeout: float = TIMEOUT,
+    secret_: bytes | None = None,
+    secure: bool = False,
+) -> Listener:
+    """Return the name of a port that is about to be dialled, and how messages are spelled for it.
+
+    Takes and raises as `who`, and costs no further journey but where C++ answers.
+    """
+
+    def ask(driver: Driver, deadline: float) -> Listener:
+        name = driver.run(_introduction(driver.stream, _STAT), deadline)
+        return Listener(name, bool(name) and _speaks_yarp4(driver, deadline))
+
+    return _meet(contact, ask, Listener(), timeout, secret_, secure)
+
+
+def _meet(
+    contact: Contact,
+    ask: Callable[[Driver, float], Answer],
+    otherwise: Answer,
+    timeout: float,
+    secret_: bytes | None,
+    secure: bool,
+) -> Answer:
+    """Dial and `ask`; return `otherwise` if it is no YARP port, or one with another key."""
     deadline = _deadline(timeout)
     driver = call(contact, timeout, secure=secure)
     key = secret() if secret_ is None else secret_
@@ -132,22 +171,22 @@ def who(
         with scope.waking(lambda: driver.transport.interrupt()):
             if key:
                 driver.run(prove_initiator(driver.stream, key), min(deadline, _deadline(PROVING)))
-            name = driver.run(_introduction(driver.stream), deadline)
-            return Listener(name, bool(name) and _speaks_yarp4(driver, deadline))
+            return ask(driver, deadline)
     except Timeout as error:
         raise Timeout(
             f"what listens at {contact.address} does not say who it is; its program may be stopped "
             "or busy"
         ) from error
     except (YarpError, OSError):
-        return Listener()  # no YARP port, or one with another key
+        return otherwise
     finally:
         driver.transport.close()
 
 
-def _introduction(stream: ByteStream) -> Steps[str]:
-    """Its name, which it says first when it describes itself. What tells its version follows."""
-    stream.write(b"CONNACK admin\r\n*\r\na\r\n[stat] in ?\r\n")
+def _introduction(stream: ByteStream, further: bytes = b"") -> Steps[str]:
+    """Its name, which it says first when it describes itself. `further`: a question whose answer
+    follows."""
+    stream.write(b"CONNACK admin\r\n*\r\n" + further)
     welcome = yield from stream.read_line(_LONGEST)
     if not welcome.startswith(b"Welcome"):
         return ""
@@ -163,15 +202,14 @@ def _speaks_yarp4(driver: Driver, deadline: float) -> bool:
 
 
 def _version_known(stream: ByteStream) -> Steps[bool]:
-    """Ports of yarpy alone know [stat]; [bus], which would load ROS there, all others but those of
-    YARP 4."""
+    """Read the rest of the description and the answer to _STAT, and ask what is left to ask."""
     while (yield from stream.read_line(_LONGEST)) != _ACKNOWLEDGED:
-        pass  # the rest of the description
+        pass
     if (yield from stream.read_line(_LONGEST)) != _UNKNOWN:
         return False
     while (yield from stream.read_line(_LONGEST)) != _ACKNOWLEDGED:
         pass
-    stream.write(b"a\r\n[bus]\r\n")
+    stream.write(_BUS)
     return (yield from stream.read_line(_LONGEST)) == _UNKNOWN
 
 
@@ -235,7 +273,7 @@ def drop_output(
 def is_alive(contact: Contact, key: bytes = b"") -> bool:
     """Return whether the port of that name answers at that address."""
     try:
-        return who(contact, secret_=key).name == contact.name
+        return who(contact, secret_=key) == contact.name
     except YarpError:
         return False
 
@@ -253,12 +291,6 @@ def is_ours(contact: Contact, timeout: float = TIMEOUT, secret_: bytes | None = 
     """Return whether a port is one of yarpy, not of C++ YARP. Raises as `ask`."""
     reply = ask(contact, [Vocab("stat")], timeout=timeout, secret_=secret_)
     return not reply or reply[0] != Vocab("fail")
-
-
-def is_yarp4(contact: Contact, timeout: float = TIMEOUT, secret_: bytes | None = None) -> bool:
-    """Return whether a port is of C++ YARP 4, which answers no node any more. Raises as `ask`."""
-    reply = ask(contact, [Vocab("bus")], timeout=timeout, secret_=secret_)
-    return reply == [Vocab("fail"), "send [help] for list of valid commands"]
 
 
 def _told(contact: Contact, command: str, timeout: float, secret_: bytes | None) -> list[str]:

@@ -162,7 +162,7 @@ class Registration:
         if known is None or known.carrier != "tcp":
             return
         try:
-            found = who(known, BUSY, self.key).name
+            found = who(known, BUSY, self.key)
         except LinkClosed:
             return  # nobody listens there
         except Timeout as error:
@@ -180,7 +180,7 @@ class Registration:
     def _refuse_rival(self, contact: Contact) -> None:
         """Raise AddressError if a port of our name listens where we should."""
         try:
-            found = who(contact, BUSY, self.key).name
+            found = who(contact, BUSY, self.key)
         except (LinkClosed, Timeout):
             return
         if found == self.name:
