@@ -4,6 +4,7 @@ import subprocess
 import sys
 
 import pytest
+from support.wait import HANG
 
 import yarpy
 from yarpy import idl
@@ -15,7 +16,7 @@ def test_messages_are_classes_that_ports_send() -> None:
     with yarpy.Port("/w", names=names) as writer, yarpy.Port("/r", names=names) as reader:
         writer.connect("/r")
         writer.write(joints(name=["a"], position=[1.5]))
-        message = reader.read(timeout=5)
+        message = reader.read(timeout=HANG)
         assert message is not None
         assert message.value.to_text() == '(0 (0 0) "") (a) (1.5) () ()'
         assert message.as_(joints).position.tolist() == [1.5]

@@ -8,6 +8,7 @@ import threading
 
 import pytest
 from support.system import NO_SCHEDULING
+from support.wait import HANG
 
 from yarpy import qos
 from yarpy.errors import LocalProtocolError
@@ -74,7 +75,7 @@ def in_a_thread(work: object) -> object:
 
     thread = threading.Thread(target=run)
     thread.start()
-    thread.join(5)
+    thread.join(HANG)
     return found[0]
 
 

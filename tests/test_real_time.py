@@ -7,6 +7,7 @@ import sys
 import threading
 
 import pytest
+from support.wait import HANG
 
 from yarpy.errors import LocalProtocolError
 from yarpy.qos import Sched, scheduled
@@ -53,7 +54,7 @@ def test_priority_of_the_calling_thread_or_the_reason() -> None:
 
     thread = threading.Thread(target=run)
     thread.start()
-    thread.join(5)
+    thread.join(HANG)
     if isinstance(found[0], str):
         assert "CAP_SYS_NICE" in found[0] or "does not let" in found[0]
         assert sys.getswitchinterval() == pytest.approx(0.005)  # nothing was done by halves

@@ -11,6 +11,7 @@ from pathlib import Path
 
 import pytest
 from support.guest import is_here
+from support.wait import HANG
 
 from yarpy import registry
 from yarpy.carriers.base import Carrier
@@ -163,7 +164,7 @@ def test_several_threads_load_one_class() -> None:
     for thread in threads:
         thread.start()
     for thread in threads:
-        thread.join(5)
+        thread.join(HANG)
     assert len(set(found)) == 1
 
 

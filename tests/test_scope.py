@@ -153,7 +153,7 @@ def test_the_calls_of_a_port_end_together():
     begun.wait()
     calls.end("interrupted")
     for thread in threads:
-        thread.join(10.0)
+        thread.join(HANG)
     assert ended == ["interrupted"] * 2
     with calls.scope(1.0):
         assert scope.left() <= 1.0  # a port that was interrupted may go on

@@ -7,6 +7,7 @@ import time
 import urllib.request
 
 import pytest
+from support.wait import HANG
 
 import yarpy
 from yarpy import aio
@@ -64,13 +65,13 @@ def test_connections_are_made_awaited_and_told_in_the_loop():
             async with aio.Port("/aio/out", port_type="yarp/bottle") as writer:
                 assert not await reader.wait_for_inputs(timeout=0.05)
                 await reader.listen_to("/aio/out", "fast_tcp")
-                assert await reader.wait_for_inputs(timeout=10)
-                assert await writer.wait_for_outputs(timeout=10)
+                assert await reader.wait_for_inputs(timeout=HANG)
+                assert await writer.wait_for_outputs(timeout=HANG)
                 made = await writer.connect("/aio/in")
                 assert (made.target, made.carrier) == ("/aio/in", "tcp")
                 await writer.write([1])
                 assert await writer.flush(10)
-                assert (await reader.read(timeout=10)).value == [1]
+                assert (await reader.read(timeout=HANG)).value == [1]
                 assert writer.stats.outputs[0].messages == 1
                 assert yarpy.query("/aio/out") == writer.contact
             while len(heard) < 4:
@@ -92,7 +93,7 @@ def test_missed_deadlines_are_told_in_the_loop():
 
         async with aio.Port("/aio/in") as reader, aio.Port("/aio/out") as writer:
             await writer.connect("/aio/in")
-            assert await reader.wait_for_inputs(timeout=10)
+            assert await reader.wait_for_inputs(timeout=HANG)
             reader.inputs[0].qos = yarpy.Qos(deadline=0.02)
             reader.on_deadline(hear)
             writer.port.write([1], yarpy.Stamp(1, time.time() - 0.5))
@@ -102,9 +103,9 @@ def test_missed_deadlines_are_told_in_the_loop():
             assert threads == [threading.main_thread()]
             reader.on_deadline(None)
             # First, for a write waits in this thread until the message before it was read.
-            assert (await reader.read(timeout=10)).value == [1]
+            assert (await reader.read(timeout=HANG)).value == [1]
             writer.port.write([2], yarpy.Stamp(2, time.time() - 0.5))
-            assert (await reader.read(timeout=10)).value == [2]
+            assert (await reader.read(timeout=HANG)).value == [2]
             assert heard.empty()
 
     asyncio.run(main())
@@ -123,7 +124,7 @@ def test_administrative_messages_and_pages_are_answered_in_the_loop():
             port.on_page(lambda path, fields: f"<h1>{path}</h1>")
             assert await asyncio.to_thread(yarpy.admin, "/aio/asked", "who") == ["mine"]
             page = await asyncio.to_thread(
-                urllib.request.urlopen, f"http://{port.contact.address}/x", timeout=10
+                urllib.request.urlopen, f"http://{port.contact.address}/x", timeout=HANG
             )
             with page:
                 assert page.read() == b"<h1>/x</h1>"
@@ -145,7 +146,7 @@ def test_a_connection_that_comes_when_its_task_was_cancelled_is_ended(monkeypatc
             def connect_slowly(*arguments):
                 connection = connect(*arguments)
                 made.set()
-                assert go_on.wait(20)
+                assert go_on.wait(HANG)
                 return connection
 
             monkeypatch.setattr(out.port, "connect", connect_slowly)
@@ -161,7 +162,7 @@ def test_a_connection_that_comes_when_its_task_was_cancelled_is_ended(monkeypatc
                 assert time.monotonic() < deadline
                 await asyncio.sleep(0.001)
             assert await out.connect("/in", "tcp")
-            assert await in_.wait_for_inputs(timeout=20)
+            assert await in_.wait_for_inputs(timeout=HANG)
 
     asyncio.run(main())
 

@@ -28,7 +28,7 @@ def test_reader_that_is_slow_holds_the_sender_up_and_loses_nothing():
 
                 work = asyncio.create_task(asyncio.to_thread(write))
                 await asyncio.sleep(0.1)
-                got = [(await reader.read(timeout=5)).value[0] for _ in range(200)]
+                got = [(await reader.read(timeout=HANG)).value[0] for _ in range(200)]
                 await work
                 assert got == list(range(200))
                 assert reader.stats.inputs[0].drops == 0
@@ -75,8 +75,8 @@ def test_drops_of_latest_are_counted_on_their_connection():
 def test_question_that_everybody_forgot_gets_an_empty_answer():
     async def main():
         async with aio.Port("/aio/in") as reader, aio.RpcClient("/aio/in") as client:
-            asking = asyncio.create_task(client.call("x", timeout=20))
-            message = await reader.read(timeout=20)
+            asking = asyncio.create_task(client.call("x", timeout=HANG))
+            message = await reader.read(timeout=HANG)
             with pytest.raises(yarpy.Timeout):
                 await reader.read(timeout=0.05)  # it may still be answered, by any task
             assert message.wants_reply

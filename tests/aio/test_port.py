@@ -107,7 +107,7 @@ def test_messages_of_several_tasks_leave_in_the_order_of_their_calls():
             await writer.connect("/aio/in")
 
             async def read():
-                return [(await reader.read(timeout=20)).value[0] for _ in range(1000)]
+                return [(await reader.read(timeout=HANG)).value[0] for _ in range(1000)]
 
             reading = asyncio.create_task(read())
             await asyncio.gather(*(writer.write([number]) for number in range(1000)))
@@ -177,7 +177,7 @@ def test_polling_and_waiting_need_no_await():
             assert (reader.poll(), reader.waiting) == (None, 0)
             reader.read_strictly(False)
             await writer.write([3])
-            assert (await reader.read(timeout=10)).value == [3]
+            assert (await reader.read(timeout=HANG)).value == [3]
 
     asyncio.run(main())
 
@@ -195,7 +195,7 @@ def test_interrupting_wakes_readers_and_writers_until_resumed():
                     await task
             reader.resume()
             await writer.write([1])
-            assert (await reader.read(timeout=10)).value == [1]
+            assert (await reader.read(timeout=HANG)).value == [1]
 
     asyncio.run(main())
 
@@ -236,7 +236,7 @@ def test_asking_all_connected_ports():
         ):
             await asker.connect("/aio/a", "tcp")
             await asker.connect("/aio/b", "tcp")
-            answers = await asker.ask(["who"], timeout=10)
+            answers = await asker.ask(["who"], timeout=HANG)
             assert [answer.value for answer in answers] == [["a"], ["b"]]
 
     asyncio.run(main())

@@ -7,6 +7,7 @@ from urllib.request import urlopen
 
 import pytest
 from support.lasted import lasted
+from support.wait import HANG
 
 import yarpy
 from yarpy import aio
@@ -96,7 +97,9 @@ def test_tell_and_pages():
             await client.call("and")
             assert heard == [["go", 1], ["and"]]
             address = server.port.address
-            page = await asyncio.to_thread(lambda: urlopen(f"http://{address}/", timeout=10).read())
+            page = await asyncio.to_thread(
+                lambda: urlopen(f"http://{address}/", timeout=HANG).read()
+            )
             assert page == b"<p>mine</p>"
 
     asyncio.run(main())
@@ -184,7 +187,7 @@ def test_question_after_the_loop_has_ended_is_answered():
 
     server = asyncio.run(main())
     with yarpy.RpcClient("/aio/server") as client:
-        answer = client.ask(["x"], timeout=10)
+        answer = client.ask(["x"], timeout=HANG)
         assert answer.value[0] == "fail"
         assert "loop of this port has ended" in answer.value[1]
     server.port.close()

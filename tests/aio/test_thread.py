@@ -16,7 +16,7 @@ from yarpy.scope import sleep
 def test_each_piece_of_work_has_a_thread_and_idle_ones_are_used_again():
     async def main():
         both = threading.Barrier(100)
-        await asyncio.gather(*(in_thread(lambda: both.wait(20)) for _ in range(100)))
+        await asyncio.gather(*(in_thread(lambda: both.wait(HANG)) for _ in range(100)))
         for _ in range(200):
             if len(THREADS._idle) >= 100:
                 break
@@ -115,12 +115,12 @@ def test_forked_process_has_threads_of_its_own():
     threads = Threads()
     ran = threading.Event()
     threads.start(ran.set)
-    assert ran.wait(10)
+    assert ran.wait(HANG)
     child = os.fork()
     if child == 0:
         again = threading.Event()
         threads.start(again.set)
-        os._exit(0 if again.wait(10) else 1)
+        os._exit(0 if again.wait(HANG) else 1)
     assert os.waitpid(child, 0)[1] == 0
 
 
@@ -134,7 +134,7 @@ def test_what_succeeds_when_nobody_waits_any_more_is_undone(late, monkeypatch):
 
         def work():
             begun.set()
-            assert go_on.wait(20)
+            assert go_on.wait(HANG)
             return "made"
 
         task = asyncio.create_task(in_thread(work, undo=undone.append))
@@ -146,7 +146,7 @@ def test_what_succeeds_when_nobody_waits_any_more_is_undone(late, monkeypatch):
                 loop, "call_soon_threadsafe", lambda *words: (call(*words), told.set())
             )
             go_on.set()
-            assert told.wait(20)
+            assert told.wait(HANG)
             loop.call_soon(task.cancel)
         else:
             task.cancel()

@@ -3,6 +3,7 @@
 import click
 import pytest
 from support.system import NO_MARKS
+from support.wait import HANG
 
 import yarpy
 from yarpy.cli.ends import grant, of_a_connection, show
@@ -17,7 +18,7 @@ def connected():
         yarpy.BufferedPort("/in") as in_,
     ):
         out.connect("/in")
-        assert in_.wait_for_inputs(timeout=5)
+        assert in_.wait_for_inputs(timeout=HANG)
         yield
 
 

@@ -174,7 +174,7 @@ def test_installed_command():
     script = Path(sys.executable).parent / "yarpy"
     if not script.exists():
         pytest.skip("yarpy is not installed beside this interpreter")
-    done = subprocess.run([script, "version"], capture_output=True, text=True, timeout=20)
+    done = subprocess.run([script, "version"], capture_output=True, text=True, timeout=HANG)
     assert (done.returncode, done.stdout.split()[:2]) == (0, ["yarpy", "version"])
 
 
@@ -185,7 +185,9 @@ def test_small_verbs_load_nothing_heavy(verb):
         f"import sys; from yarpy.cli.main import find_verb; find_verb({verb!r});"
         f"print(sorted(set({heavy!r}) & sys.modules.keys()))"
     )
-    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, timeout=20)
+    done = subprocess.run(
+        [sys.executable, "-c", code], capture_output=True, text=True, timeout=HANG
+    )
     assert done.stdout.strip() == "[]", done.stderr
 
 

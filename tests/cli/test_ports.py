@@ -5,6 +5,7 @@ import time
 
 import click
 import pytest
+from support.wait import HANG
 
 import yarpy
 from yarpy.cli import signals
@@ -28,15 +29,15 @@ def test_with_a_name_server(names):
         hear_from(a, "fast_tcp://opening/c")
         assert [(link.name, link.carrier) for link in a.outputs] == [("/opening/b", "tcp")]
         assert [(link.name, link.carrier) for link in c.outputs] == [("/opening/a", "fast_tcp")]
-        assert b.wait_for_inputs(timeout=5)
+        assert b.wait_for_inputs(timeout=HANG)
 
 
 def test_topics(server):
     with open_port(yarpy.Port, "/opening/d") as d, open_port(yarpy.Port, "/opening/e") as e:
         send_to(d, "topic://opening/t")
         hear_from(e, "topic://opening/t")
-        assert e.wait_for_inputs(timeout=5)
-        assert d.wait_for_outputs(timeout=5)
+        assert e.wait_for_inputs(timeout=HANG)
+        assert d.wait_for_outputs(timeout=HANG)
         assert [link.name for link in d.outputs] == ["/opening/e"]
 
 
@@ -71,12 +72,12 @@ def test_without_a_name_server(monkeypatch, capsys):
         assert f"others reach it at /{reader.address}" in capsys.readouterr().err
         send_to(writer, f"/{reader.address}")
         writer.write(["by address"])
-        assert reader.read(timeout=5).value == ["by address"]
+        assert reader.read(timeout=HANG).value == ["by address"]
         writer.outputs[0].close()
         hear_from(reader, f"tcp://{writer.address}/")
-        writer.wait_for_outputs(timeout=5)
+        writer.wait_for_outputs(timeout=HANG)
         writer.write(["again"])
-        assert reader.read(timeout=5).value == ["again"]
+        assert reader.read(timeout=HANG).value == ["again"]
 
 
 def test_ports_close_with_the_command(names):

@@ -8,6 +8,7 @@ import sys
 import time
 
 import pytest
+from support.wait import HANG
 
 import yarpy
 from yarpy.cli.prompt import Completer, history_file
@@ -50,7 +51,7 @@ class Terminal:
     def type(self, text):
         os.write(self._fd, text.encode())
 
-    def wait(self, text, timeout=10.0):
+    def wait(self, text, timeout=HANG):
         """Wait until `text` was said behind what was waited for before."""
         deadline = time.monotonic() + timeout
         while text.encode() not in CONTROL.sub(b"", self.said):
@@ -66,14 +67,14 @@ class Terminal:
 
     def end(self):
         """The exit code, once the program has ended by itself."""
-        return self._process.wait(10)
+        return self._process.wait(HANG)
 
     def __enter__(self):
         return self
 
     def __exit__(self, *details):
         self._process.kill()
-        self._process.wait(10)
+        self._process.wait(HANG)
         os.close(self._fd)
 
 

@@ -1,6 +1,7 @@
 """Messages are sent on byte for byte."""
 
 import pytest
+from support.wait import HANG
 
 import yarpy
 from yarpy.cli.relay import forwardable
@@ -19,9 +20,9 @@ def test_any_message_over_any_carrier(carrier):
         outlet.connect("/to")
         value = yarpy.Bottle([1, "two", [3.5, yarpy.Vocab("four")], yarpy.Int8(5)])
         source.write(value)
-        message = inlet.read(timeout=5)
+        message = inlet.read(timeout=HANG)
         outlet.write(forwardable(message))
-        arrived = sink.read(timeout=5)
+        arrived = sink.read(timeout=HANG)
         assert arrived.value == value
         if carrier in ("tcp", "udp"):
             assert bytes(arrived.payload) == value.to_bytes()

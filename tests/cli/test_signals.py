@@ -113,7 +113,9 @@ except signals.Interrupted as signal_:
 
 def test_a_signal_that_comes_where_python_drops_exceptions_is_not_lost():
     """In a finaliser, or a callback of an import: it used to be printed and forgotten."""
-    done = subprocess.run([sys.executable, "-c", LOST], capture_output=True, text=True, timeout=20)
+    done = subprocess.run(
+        [sys.executable, "-c", LOST], capture_output=True, text=True, timeout=HANG
+    )
     assert done.stdout.splitlines()[-1] == f"ended by {int(signal.SIGTERM)}"
     assert "Exception ignored" not in done.stderr
 
@@ -180,6 +182,6 @@ except signals.Interrupted as signal_:
 def test_a_signal_that_another_thread_gets_wakes_the_main_thread():
     """As happens while connections end: the main thread slept on, and ^C seemed to do nothing."""
     done = subprocess.run(
-        [sys.executable, "-c", ELSEWHERE], capture_output=True, text=True, timeout=20
+        [sys.executable, "-c", ELSEWHERE], capture_output=True, text=True, timeout=HANG
     )
     assert done.stdout.splitlines()[-1] == f"ended by {int(signal.SIGTERM)}"

@@ -8,7 +8,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from support.wait import wait_until
+from support.wait import HANG, wait_until
 
 import yarp
 
@@ -74,7 +74,7 @@ def test_periodic_threads() -> None:
 
     for thread in (Periodic(0.005),):
         done = threading.Event()
-        assert thread.start() and done.wait(10)
+        assert thread.start() and done.wait(HANG)
         wait_until(lambda thread=thread: thread.getIterations() > 2)
         thread.suspend()
         assert thread.isSuspended()

@@ -124,7 +124,7 @@ def test_alone(name: str):
 def test_talker_and_listener(server: yarpy.NameServer):
     pattern = r"^/talker Bottle\(\[\d+, 'hello'\]\) Stamp\(count=\d+, time=\d"
     with start("listener.py", **server.environment) as listener:
-        assert yarpy.wait_for("/listener", timeout=10)  # it waits for the talker now
+        assert yarpy.wait_for("/listener", timeout=HANG)  # it waits for the talker now
         with start("talker.py", **server.environment) as talker:
             listener.wait_line(pattern)
             talker.kill()
@@ -161,7 +161,7 @@ def test_rpc(server: yarpy.NameServer):
 
 def test_module(server: yarpy.NameServer):
     with start("module.py", "--name", "/tock", "--rate", "50", **server.environment) as module:
-        assert yarpy.wait_for("/tock/quit", timeout=10)
+        assert yarpy.wait_for("/tock/quit", timeout=HANG)
         with yarpy.RpcClient("/tock/rpc") as client:
             assert client.call("count")[0] > 0
             assert client.call("rate", 100) == ["ok"]

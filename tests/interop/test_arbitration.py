@@ -10,7 +10,7 @@ import pytest
 from support.cpp import CppYarp
 from support.cpp_program import CppProgram
 from support.peer import program
-from support.wait import wait_until
+from support.wait import HANG, wait_until
 
 import yarpy
 from yarpy.data.bottle import Bottle
@@ -77,7 +77,11 @@ def test_priority(our_names: CppYarp, peer: CppProgram, eye: yarpy.Port, heard: 
     typed = "CONNECT person\na\nset in /line (bs 3.5)\n"
     where = [eye.contact.host, str(eye.contact.port)]
     answer = subprocess.run(
-        [program("nc"), "-w", "2", *where], input=typed, capture_output=True, text=True, timeout=20
+        [program("nc"), "-w", "2", *where],
+        input=typed,
+        capture_output=True,
+        text=True,
+        timeout=HANG,
     )
     assert "Configured connection from /line" in answer.stdout
     assert passes(peer, heard, *names, *names) == ["/line", "/line"]

@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 from support.cpp_program import CppProgram
+from support.wait import HANG
 
 import yarpy
 
@@ -42,7 +43,7 @@ def test_every_array_through_a_cpp_bottle(
     """C++ reads it as a Bottle, writes it again, and it is the array it was."""
     side.begin("back(read(yarp.Bottle()))")
     port.write(array)
-    message = port.read(timeout=5)
+    message = port.read(timeout=HANG)
     assert side.end()
     for found in (message.as_(np.ndarray), np.asarray(message.value)):
         assert found.dtype == array.dtype and found.shape == array.shape
@@ -124,12 +125,12 @@ def test_a_dataclass_is_a_property(side: CppProgram, port: yarpy.Port) -> None:
         " b.find('yarpy.type').asList().find('mask').asList().toString()]"
     )
     port.write(observation())
-    check(port.read(timeout=5).as_(Observation))
+    check(port.read(timeout=HANG).as_(Observation))
     assert side.end() == ["mat", 6.0, True, "map", 'array "|b1" 2 3']
     # As a Property, C++ makes a text of it and reads that; what text can say comes back.
     side.begin("p = read(yarp.Property()); port.write(p); p.check('yarpy.type')")
     port.write(observation())
-    check(port.read(timeout=5).as_(Observation))
+    check(port.read(timeout=HANG).as_(Observation))
     assert side.end()
 
 
@@ -146,7 +147,7 @@ def test_a_property_of_cpp_as_a_dataclass(side: CppProgram, port: yarpy.Port) ->
         "p = yarp.Property(); p.fromString('(joints (0.5 1.5)) (speed 2) (name arm) (other x)')\n"
         "port.write(p)"
     )
-    found = port.read(timeout=5).as_(State)
+    found = port.read(timeout=HANG).as_(State)
     assert side.end()
     assert found.joints.tolist() == [0.5, 1.5] and found.joints.dtype == "f8"
     assert (found.speed, found.name, found.more) == (2.0, "arm", 3) and type(found.speed) is float

@@ -8,7 +8,7 @@ import pytest
 from support.cpp import CppYarp
 from support.cpp_program import CppProgram
 from support.lasted import lasted
-from support.wait import wait_until
+from support.wait import HANG, wait_until
 
 import yarpy
 from yarpy import Message, Stamp
@@ -62,7 +62,7 @@ def test_they_keep_the_latest(peer: CppProgram) -> None:
         port.connect("/cpp")
         for number in range(COUNT):
             port.write([number])
-        assert port.flush(timeout=5)
+        assert port.flush(timeout=HANG)
         assert peer.do("port.read().get(0).asInt32()") == COUNT - 1
         assert peer.do("port.getPendingReads()") == 0
 
@@ -73,7 +73,7 @@ def test_they_keep_all(peer: CppProgram) -> None:
         port.connect("/cpp")
         for number in range(COUNT):
             port.write([number], Stamp(number, number + 0.5))
-        assert port.flush(timeout=5)
+        assert port.flush(timeout=HANG)
         assert peer.do("port.getPendingReads()") == COUNT
         seen = peer.do(
             "seen, stamp = [], yarp.Stamp()\n"
@@ -139,8 +139,8 @@ def test_a_plain_port_holds_its_sender_up(peer: CppProgram) -> None:
         peer.begin("port.write(yarp.Bottle('1')) and port.write(yarp.Bottle('2')) and time.time()")
         time.sleep(0.3)
         before = time.time()
-        assert port.read(timeout=5).value == [1]
-        assert port.read(timeout=5).value == [2]
+        assert port.read(timeout=HANG).value == [1]
+        assert port.read(timeout=HANG).value == [2]
         assert peer.end() >= before
 
 
@@ -166,7 +166,7 @@ def test_callbacks(peer: CppProgram) -> None:
         peer.begin("time.sleep(1)")
         for number in range(5):
             source.write([number])
-            assert arrived.get(timeout=5).value == [number, "seen"]
+            assert arrived.get(timeout=HANG).value == [number, "seen"]
         peer.end()
         peer.do("port.disableCallback()")
 
@@ -177,14 +177,14 @@ def test_interrupt_and_resume(peer: CppProgram) -> None:
     with yarpy.BufferedPort("/ours", strict=True) as port:
         port.listen_to("/cpp")
         peer.do("port.write(yarp.Bottle('1'))")
-        assert port.read(timeout=5).value == [1]
+        assert port.read(timeout=HANG).value == [1]
         port.interrupt()
         assert peer.do("[port.write(yarp.Bottle('2')) for _ in range(3)]") == [True] * 3
         with pytest.raises(yarpy.PortClosed):
             port.read(timeout=1)
         port.resume()
         assert peer.do("port.write(yarp.Bottle('3'))")
-        assert port.read(timeout=5).value == [3]
+        assert port.read(timeout=HANG).value == [3]
         assert port.inputs[0].stats.drops == 3
         # ... and theirs.
         port.connect("/cpp")

@@ -48,7 +48,7 @@ def test_they_close_first(peer: CppProgram, carrier: str) -> None:
     with yarpy.Port("/out") as source, yarpy.BufferedPort("/in", strict=True) as sink:
         source.connect("/cpp/b", carrier)
         sink.listen_to("/cpp/a", carrier)
-        assert sink.wait_for_inputs(timeout=5)
+        assert sink.wait_for_inputs(timeout=HANG)
         flows(sink, lambda: peer.do("a.write(yarp.Bottle('x'))"))
         began = time.monotonic()
         peer.do("a.close(); b.close()")
@@ -69,7 +69,7 @@ def test_we_close_first(peer: CppProgram, carrier: str) -> None:
     with yarpy.Port("/out") as source, yarpy.BufferedPort("/in", strict=True) as sink:
         source.connect("/cpp/b", carrier)
         sink.listen_to("/cpp/a", carrier)
-        assert sink.wait_for_inputs(timeout=5)
+        assert sink.wait_for_inputs(timeout=HANG)
         flows(sink, lambda: peer.do("a.write(yarp.Bottle('x'))"))
         # A question whether it lives counts as an input as long as that takes.
         wait_until(lambda: peer.do(counts) == [1, 1])
@@ -95,7 +95,7 @@ def test_their_receiver_drops_us(peer: CppProgram) -> None:
             source.disconnect("/cpp")
             source.connect("/cpp", carrier)
             source.write(["again"])
-            assert source.flush(timeout=5)
+            assert source.flush(timeout=HANG)
             wait_until(lambda: peer.do("b = port.read(False); b and b.toString()") == "again")
             source.disconnect("/cpp")
 
@@ -196,13 +196,13 @@ def test_a_killed_server_of_theirs(network: CppYarp) -> None:
     with network.python_popen(CPP_SERVER) as server:
         server.wait_line("Port /killed/rpc active")
         client = yarpy.RpcClient("/killed/rpc", name="/ours")
-        assert client.call("one", timeout=5) == ["one"]
+        assert client.call("one", timeout=HANG) == ["one"]
         server.kill()
         with pytest.raises(yarpy.LinkClosed):
-            client.call("nobody", timeout=5)
+            client.call("nobody", timeout=HANG)
     with client, network.python_popen(CPP_SERVER) as server:
         server.wait_line("Port /killed/rpc active")
-        assert client.call("two", timeout=5) == ["two"], "the next call finds the new one"
+        assert client.call("two", timeout=HANG) == ["two"], "the next call finds the new one"
 
 
 OURS = """

@@ -58,7 +58,7 @@ def test_a_number_of_ones_own(cpp_names: CppYarp) -> None:
 def test_the_multicast_group_is_given_back(cpp_names: CppYarp) -> None:
     with yarpy.Port("/source") as source, yarpy.BufferedPort("/sink") as sink:
         source.connect("/sink", "mcast")
-        assert sink.wait_for_inputs(timeout=5)
+        assert sink.wait_for_inputs(timeout=HANG)
         assert " type mcast\n" in listing(cpp_names).replace(_fallback(cpp_names), "")
     assert " type mcast\n" not in listing(cpp_names).replace(_fallback(cpp_names), "")
 

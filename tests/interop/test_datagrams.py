@@ -5,7 +5,7 @@ import time
 import numpy as np
 import pytest
 from support.cpp_program import CppProgram
-from support.wait import wait_until
+from support.wait import HANG, wait_until
 
 import yarpy
 
@@ -40,6 +40,6 @@ def test_large_pictures_come_from_cpp(peer: CppProgram, carrier: str) -> None:
     )
     with yarpy.BufferedPort("/ours", strict=True) as port:
         assert peer.do(f"yarp.Network.connect('/cpp', '/ours', '{carrier}')")
-        assert port.wait_for_inputs(timeout=5)
+        assert port.wait_for_inputs(timeout=HANG)
         peer.do(f"for _ in range({PICTURES}): port.write(picture); time.sleep(0.01)")
         wait_until(lambda: port.inputs[0].stats.messages >= ENOUGH, what="pictures have come")

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 from support.cpp import CppYarp
 from support.cpp_device import PATIENT, between, device_host
-from support.wait import wait_until
+from support.wait import HANG, wait_until
 
 from yarpy.kits import devices
 from yarpy.kits.devices.interfaces.joypad import Point, Touch
@@ -24,7 +24,7 @@ def test_channels(network: CppYarp) -> None:
     with (
         devices.AnalogSensorServer("/ours", sensor, 0.01),
         between(network, "analogServer", PATIENT, **inner),
-        devices.AnalogSensor("/cpp", timeout=10.0) as client,
+        devices.AnalogSensor("/cpp", timeout=HANG) as client,
     ):
         wait_until(lambda: client.channels() == [1.5, -2.0])
         client.calibrate()
@@ -53,7 +53,7 @@ def test_a_battery(network: CppYarp) -> None:
     with (
         devices.BatteryServer("/ours", Pack(), 0.02),
         between(network, "batteryWrapper", "batteryClient", period=0.02),
-        devices.Battery("/cpp", timeout=10.0) as client,
+        devices.Battery("/cpp", timeout=HANG) as client,
     ):
         wait_until(lambda: client.charge() == 80.5)
         assert client.voltage() == 24.5 and client.current() == 1.5
@@ -86,7 +86,7 @@ def test_a_laser(network: CppYarp) -> None:
     with (
         devices.LaserServer("/ours", laser, 0.02),
         between(network, "rangefinder2D_nws_yarp", "Rangefinder2DClient", period=0.02),
-        devices.Laser("/cpp", timeout=10.0) as client,
+        devices.Laser("/cpp", timeout=HANG) as client,
     ):
         wait_until(lambda: [*client.scan().ranges] == [0.5] * 12)
         assert client.angles == (0.0, 360.0) and client.distances == (0.1, 3.5)

@@ -7,7 +7,7 @@ import time
 
 from support.cpp import CppYarp
 from support.cpp_program import CppProgram
-from support.wait import wait_until
+from support.wait import HANG, wait_until
 
 import yarpy
 from yarpy.kits.doctor import Case, examine
@@ -25,7 +25,7 @@ def test_what_is_found_at_cpp_ports(our_names: CppYarp) -> None:
         peer.do("out = yarp.BufferedPortBottle(); out.open('/doc/cpp/out')")
         assert probes("/doc/cpp/out", "/doc/py/in") == {"not-connected"}
         peer.do("yarp.Network.connect('/doc/cpp/out', '/doc/py/in')")
-        assert in_.wait_for_inputs(timeout=5)
+        assert in_.wait_for_inputs(timeout=HANG)
         assert probes("/doc/cpp/out", "/doc/py/in") == {"writes-nothing"}
         # It writes to a port of C++ that nobody reads.
         peer.do("plain = yarp.Port(); plain.open('/doc/cpp/in')")

@@ -41,7 +41,7 @@ def filming(name: str, colour: tuple[int, int, int]) -> Iterator[yarpy.Port]:
             yield port
         finally:
             over.set()
-            thread.join(5)
+            thread.join(HANG)
 
 
 class Watcher:

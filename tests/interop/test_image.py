@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 import pytest
 from support.cpp_program import CppProgram
+from support.wait import HANG
 
 import yarpy
 from yarpy import Image
@@ -77,7 +78,7 @@ def test_cpp_sends(side: CppProgram, port: yarpy.Port, kind: str, code: str) -> 
                 "assert port.write(image)\n"
                 "[image.getRowSize(), memory(image)]"
             )
-            image = port.read(timeout=5).value
+            image = port.read(timeout=HANG).value
             row_bytes, memory = side.end()
             assert isinstance(image, Image)
             found = (image.code, image.width, image.height, image.quantum)
@@ -113,7 +114,7 @@ def test_pixels_are_where_they_belong(side: CppProgram, port: yarpy.Port) -> Non
         "p = image.pixel(4, 2); p.r, p.g, p.b = 40, 50, 60\n"
         "port.write(image)"
     )
-    seen = port.read(timeout=5).as_(np.ndarray)
+    seen = port.read(timeout=HANG).as_(np.ndarray)
     assert side.end()
     assert seen.shape == (4, 5, 3)
     assert seen[2, 4].tolist() == [40, 50, 60]
@@ -123,7 +124,7 @@ def test_pixels_are_where_they_belong(side: CppProgram, port: yarpy.Port) -> Non
 def test_bottom_up(side: CppProgram, port: yarpy.Port) -> None:
     """The first row in memory is the bottom one: an array still begins at the top."""
     side.begin("image = make('ImageMono', 6, 4, 8, False)\nport.write(image)\nmemory(image)")
-    image = port.read(timeout=5).value
+    image = port.read(timeout=HANG).value
     stored = rows(side.end(), 8, 6)
     assert not image.top_down
     assert (image.array == stored[::-1]).all()
@@ -137,7 +138,7 @@ def test_bottom_up(side: CppProgram, port: yarpy.Port) -> None:
 
 def test_an_empty_image(side: CppProgram, port: yarpy.Port) -> None:
     side.begin("port.write(yarp.ImageRgb())")
-    image = port.read(timeout=5).value
+    image = port.read(timeout=HANG).value
     assert side.end()
     assert (image.width, image.height, image.array.shape) == (0, 0, (0, 0, 3))
     side.begin("read('FlexImage')[:2]")
@@ -170,8 +171,8 @@ def test_over_every_binary_carrier(side: CppProgram) -> None:
         with yarpy.Port("/ours") as port:
             port.connect("/cpp", carrier)
             port.listen_to("/cpp", carrier)
-            assert port.wait_for_inputs(timeout=5)
+            assert port.wait_for_inputs(timeout=HANG)
             side.begin("image = yarp.ImageRgb(); port.read(image); port.write(image)")
             port.write(array)
-            assert (port.read(timeout=5).as_(np.ndarray) == array).all(), carrier
+            assert (port.read(timeout=HANG).as_(np.ndarray) == array).all(), carrier
             assert side.end()

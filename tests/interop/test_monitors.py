@@ -13,7 +13,7 @@ import numpy as np
 import pytest
 from support.cpp import CppYarp
 from support.cpp_program import CppProgram
-from support.wait import wait_until
+from support.wait import HANG, wait_until
 
 import yarpy
 from yarpy.monitors.stock import demosaic
@@ -46,7 +46,7 @@ def test_we_read_what_cpp_compressed(peer: CppProgram) -> None:
         plain = yarpy.Bottle(["hello", 1, [2.5]]).to_bytes()
         text = yarpy.Bottle([len(plain), zlib.compress(plain)]).to_text()
         peer.begin(f"bottle = yarp.Bottle({text!r})\nport.write(bottle)")
-        assert port.read(timeout=10).value == ["hello", 1, [2.5]]
+        assert port.read(timeout=HANG).value == ["hello", 1, [2.5]]
         assert peer.end()
         assert peer.do("yarp.Network.disconnect('/cpp', '/ours')")
 
@@ -70,7 +70,7 @@ def test_camera_of_cpp(peer: CppProgram, tokens: str, width: int, make: Any) -> 
             " image.getRawImageSize())\n"
             "stamp = yarp.Stamp(5, 2.5)\nport.setEnvelope(stamp)\nport.write(image)"
         )
-        message = port.read(timeout=10)
+        message = port.read(timeout=HANG)
         assert peer.end()
         assert message.stamp == yarpy.Stamp(5, 2.5)
         order = demosaic.pattern("rggb" if "rggb" in tokens else "grbg")

@@ -4,7 +4,7 @@ import time
 
 import pytest
 from support.cpp_program import CppProgram
-from support.wait import wait_until
+from support.wait import HANG, wait_until
 
 import yarpy
 from yarpy import Bottle
@@ -97,9 +97,9 @@ def test_they_wire_our_ports(peer: CppProgram) -> None:
         assert not peer.do("yarp.Network.isConnected('/out', '/in', True)")
         for carrier in CARRIERS:
             assert peer.do(f"yarp.Network.connect('/out', '/in', '{carrier}')")
-            assert sink.wait_for_inputs(timeout=5)
+            assert sink.wait_for_inputs(timeout=HANG)
             source.write([carrier])
-            assert sink.read(timeout=5).value == [carrier]
+            assert sink.read(timeout=HANG).value == [carrier]
             style = f"style = yarp.ContactStyle(); style.carrier = '{carrier}'\n"
             assert peer.do(f"{style}yarp.Network.isConnected('/out', '/in', style)")
             assert peer.do("yarp.Network.disconnect('/out', '/in')")
@@ -159,7 +159,7 @@ def test_quality_of_service(peer: CppProgram) -> None:
     """setConnectionQos on a connection of ours, and of one of theirs by [prop]."""
     with yarpy.Port("/out") as source, yarpy.BufferedPort("/in") as sink:
         source.connect("/in")
-        assert sink.wait_for_inputs(timeout=5)
+        assert sink.wait_for_inputs(timeout=HANG)
         assert peer.do(
             "style, high = yarp.QosStyle(), yarp.QosStyle.PacketPriorityHigh\n"
             "style.setPacketPriorityByLevel(high)\n"

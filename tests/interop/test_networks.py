@@ -12,6 +12,7 @@ import pytest
 from support.namespace import ip
 from support.peer import brings
 from support.process import Process
+from support.wait import HANG
 
 PREFIX = f"y{os.getpid() % 10000}"
 LEFT, RIGHT = "10.77.1", "10.77.2"
@@ -46,7 +47,7 @@ def start(host: str, code: str, server: str, **environment: str) -> Process:
         ["ip", "netns", "exec", host, sys.executable, "-c", code],
         env={**os.environ, "YARPY_SERVER": f"{server}:{PORT}", **environment},
     )
-    process.wait_line("ready", timeout=20)
+    process.wait_line("ready", timeout=HANG)
     return process
 
 

@@ -10,6 +10,7 @@ from collections.abc import Iterator
 
 import pytest
 from support.command_line import CommandLine
+from support.wait import HANG
 
 import yarpy
 
@@ -50,19 +51,19 @@ def test_chrt_sees_the_policy_that_was_typed(cli, ports):
     line = "prop set /subscriber1 (sched ((policy SCHED_FIFO) (priority 30)))\n"
     done = subprocess.run(
         [sys.executable, "-m", "yarpy", "admin", "rpc", "/publisher1"],
-        input=line, capture_output=True, text=True, env=cli.environment, timeout=20,
+        input=line, capture_output=True, text=True, env=cli.environment, timeout=HANG,
     )  # fmt: skip
     assert "[ok]" in done.stdout, done
     reply = yarpy.admin("/publisher1", "prop", "get", "/subscriber1")
     found = {str(key): value for key, value in reply.find("sched")}
     told = subprocess.run(
-        ["chrt", "-p", str(found["tid"])], capture_output=True, text=True, timeout=10
+        ["chrt", "-p", str(found["tid"])], capture_output=True, text=True, timeout=HANG
     ).stdout
     assert "SCHED_FIFO" in told
     assert told.rstrip().endswith("30")
     out, in_ = ports
     out.write(["still", "works"])
-    assert in_.read(timeout=5).value == ["still", "works"]
+    assert in_.read(timeout=HANG).value == ["still", "works"]
 
 
 def test_packets_on_the_wire_carry_the_class_of_each_end(cli, ports):
@@ -82,7 +83,7 @@ def test_packets_on_the_wire_carry_the_class_of_each_end(cli, ports):
         while len(seen) < 2 and time.monotonic() < until:
             if time.monotonic() > again:  # packets get lost in what other programs send
                 out.write(["look"])
-                in_.read(timeout=5)
+                in_.read(timeout=HANG)
                 out.flush(5)
                 again = time.monotonic() + 0.2
             try:

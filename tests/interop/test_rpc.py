@@ -7,6 +7,7 @@ import pytest
 from support.cpp import CppYarp
 from support.cpp_program import CppProgram
 from support.lasted import lasted
+from support.wait import HANG
 
 import yarpy
 from yarpy import Bottle, Message, Vocab
@@ -95,13 +96,13 @@ def test_a_plain_port_answers_and_asks(peer: CppProgram) -> None:
     with yarpy.Port("/server") as port:
         assert peer.do("yarp.Network.connect('/client', '/server')")
         peer.begin("ask('one')")
-        message = port.read(timeout=5)
+        message = port.read(timeout=HANG)
         assert message.wants_reply
         message.reply(["answer", *message.value])
         assert peer.end() == "answer one"
         # A question that nobody answers: C++ gets an empty reply instead of waiting for ever.
         peer.begin("ask('two')")
-        assert port.read(timeout=5).value == ["two"]
+        assert port.read(timeout=HANG).value == ["two"]
         with pytest.raises(yarpy.Timeout):
             port.read(timeout=0.05)
         assert peer.end() == ""
@@ -120,7 +121,7 @@ def test_a_buffered_port_takes_calls(peer: CppProgram) -> None:
     with yarpy.BufferedPort("/server", strict=True) as port:
         assert peer.do("yarp.Network.connect('/client', '/server')")
         assert peer.do("[ask('one'), ask('two')]") == ["", ""]
-        assert [port.read(timeout=5).value for _ in range(2)] == [["one"], ["two"]]
+        assert [port.read(timeout=HANG).value for _ in range(2)] == [["one"], ["two"]]
 
 
 def test_a_client_of_two_servers_in_turn(peer: CppProgram) -> None:
@@ -149,7 +150,7 @@ def test_a_server_with_many_clients(peer: CppProgram) -> None:
     def ask(number: int) -> None:
         with yarpy.RpcClient("/server") as client:
             for turn in range(100):
-                answer = client.call(number, turn, timeout=5)
+                answer = client.call(number, turn, timeout=HANG)
                 if answer != ["ok", number, turn]:
                     wrong.append(answer)
 
@@ -160,7 +161,7 @@ def test_a_server_with_many_clients(peer: CppProgram) -> None:
             thread.start()
         assert peer.do("all(ask(f'cpp {i}') == f'ok cpp {i}' for i in range(300))")
         for thread in threads:
-            thread.join(20)
+            thread.join(HANG)
             assert not thread.is_alive()
     assert wrong == []
 
@@ -175,7 +176,7 @@ def test_a_call_that_takes_too_long(peer: CppProgram) -> None:
         assert lasted(began) < 1.8
         peer.end()
         peer.begin("serve(1)")
-        assert client.call("again", timeout=5) == ["ok", "again"], "not the late answer"
+        assert client.call("again", timeout=HANG) == ["ok", "again"], "not the late answer"
         peer.end()
 
 
@@ -192,6 +193,6 @@ def test_the_tools(network: CppYarp) -> None:
         process.wait_line("Port /asked active")
         with yarpy.RpcClient("/asked") as client:
             process.write_line('fine "thank you" 5')
-            assert client.call("how", "are", "you", timeout=5) == ["fine", "thank you", 5]
+            assert client.call("how", "are", "you", timeout=HANG) == ["fine", "thank you", 5]
         process.stop()  # its output is block buffered: only now it is all there
         assert "Message: how are you\nReply: " in process.stdout

@@ -12,7 +12,7 @@ from support.cpp_program import CppProgram
 from support.environment import configured_for
 from support.port import free_block
 from support.process import Process
-from support.wait import wait_until
+from support.wait import HANG, wait_until
 
 import yarpy
 
@@ -22,7 +22,7 @@ def serving(programs: CppYarp, *options: str) -> Iterator[Process]:
     """`yarpy server` where `programs` look for theirs; it answers."""
     command = [sys.executable, "-m", "yarpy", "server", "--read", *options]
     with Process(command, env=programs.environment, cwd=programs.home) as process:
-        process.wait_line("Ready!", timeout=20)
+        process.wait_line("Ready!", timeout=HANG)
         yield process
 
 
@@ -97,7 +97,7 @@ def test_a_database_outlives_the_server(programs: CppYarp) -> None:
         with serving(programs, *databases):
             assert programs.run("exists", "/cpp").returncode == 0
             with yarpy.Port("/ours") as port:
-                assert port.wait_for_outputs(timeout=10), "the persistent connection is known"
+                assert port.wait_for_outputs(timeout=HANG), "the persistent connection is known"
                 port.write(["hello"])
                 assert peer.do("port.read().toString()") == "hello"
 
@@ -123,6 +123,6 @@ def test_streams_go_on_without_the_server(programs: CppYarp) -> None:
             peer.do("late = yarp.Port(); assert late.open('/late')")
             assert peer.do("yarp.Network.connect('/late', '/ours')")
             peer.begin("late.write(yarp.Bottle('4'))")
-            assert port.read(timeout=5).value == [4]
+            assert port.read(timeout=HANG).value == [4]
             assert peer.end()
         assert programs.run("exists", "/ours").returncode == 1

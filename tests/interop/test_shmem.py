@@ -9,7 +9,7 @@ import pytest
 from support.cpp import CppYarp
 from support.cpp_carrier import carrier_program
 from support.peer import brings
-from support.wait import wait_until
+from support.wait import HANG, wait_until
 
 import yarpy
 from yarpy.transports.shared.sysv import available
@@ -64,7 +64,7 @@ def test_cpp_sends(our_names: CppYarp, program: str, end: str) -> None:
         )
         for size in SIZES:
             peer.write_line("x" * size)
-            message = port.read(timeout=10)
+            message = port.read(timeout=HANG)
             assert (message.value, message.source) == (["x" * size], "/cpp")
         assert port.inputs[0].carrier == "shmem"
         if end == "leaves":
@@ -104,7 +104,7 @@ def test_cpp_answers(our_names: CppYarp, program: str) -> None:
         client.connect("/cpp", "shmem")
         for text in ("one", "x" * 6000):
             peer.write_line(f"reply {text}")
-            assert client.call("question", timeout=10) == ["reply", text]
+            assert client.call("question", timeout=HANG) == ["reply", text]
 
 
 def test_cpp_asks(our_names: CppYarp, program: str) -> None:
@@ -117,6 +117,6 @@ def test_cpp_asks(our_names: CppYarp, program: str) -> None:
         peer.write_line("x")
         peer.write_line("x" * 6000)
         peer.end_input()
-        assert peer.wait(10) == 0
+        assert peer.wait(HANG) == 0
         for size in (1, 6000):
             assert f"answer {size} {'y' * 6000}" in peer.stdout

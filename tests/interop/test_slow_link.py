@@ -13,7 +13,7 @@ import pytest
 from support.namespace import ip
 from support.peer import brings
 from support.process import Process
-from support.wait import wait_until
+from support.wait import HANG, wait_until
 
 NAME = f"y{os.getpid() % 10000}slow"
 # For each line, a number of seconds, it prints how old images were, and their bytes.
@@ -72,7 +72,7 @@ def test_images_shrink_until_the_link_takes_them(slow: str) -> None:
         return json.loads(process.stdout.splitlines()[-1])
 
     with Process(command, env=dict(os.environ)) as process:
-        process.wait_line("ready", timeout=20)
+        process.wait_line("ready", timeout=HANG)
         free = run(process, 1.5)
         shape(2)
         run(process, 2.0)

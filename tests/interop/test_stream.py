@@ -2,7 +2,7 @@
 
 import pytest
 from support.cpp_program import CppProgram
-from support.wait import wait_until
+from support.wait import HANG, wait_until
 
 import yarpy
 from yarpy import Bottle, Stamp, Vocab
@@ -25,7 +25,7 @@ def test_cpp_sends(peer: CppProgram, carrier: str) -> None:
     peer.do(OPEN)
     with yarpy.Port("/ours") as port:
         assert peer.do(f"yarp.Network.connect('/cpp', '/ours', '{carrier}')")
-        assert port.wait_for_inputs(timeout=5)
+        assert port.wait_for_inputs(timeout=HANG)
         [link] = port.inputs
         assert (link.source, link.target, link.carrier) == ("/cpp", "/ours", carrier)
         for count in range(3):
@@ -33,7 +33,7 @@ def test_cpp_sends(peer: CppProgram, carrier: str) -> None:
                 f"stamp = yarp.Stamp({count}, 5.25); port.setEnvelope(stamp)\n"
                 f"port.write(yarp.Bottle('{TEXT} {count}'))"
             )
-            message = port.read(timeout=5)
+            message = port.read(timeout=HANG)
             assert message.value == [*VALUE, count]
             assert message.stamp == Stamp(count, 5.25)
             assert message.source == "/cpp"
@@ -81,7 +81,7 @@ def test_who_connects_does_not_matter(peer: CppProgram) -> None:
         ):
             connect()
             peer.begin("port.write(yarp.Bottle('there'))")
-            assert port.read(timeout=5).value == ["there"]
+            assert port.read(timeout=HANG).value == ["there"]
             assert peer.end()
         assert len(port.inputs) == 1
 
@@ -100,13 +100,13 @@ def test_sizes_and_envelopes_of_every_kind(peer: CppProgram) -> None:
                 assert peer.end() == [len(value), value[0] if value else ""], carrier
             port.disconnect("/cpp")
             assert peer.do(f"yarp.Network.connect('/cpp', '/ours', '{carrier}')")
-            assert port.wait_for_inputs(timeout=5)
+            assert port.wait_for_inputs(timeout=HANG)
             for value in values[:most]:
                 peer.do(f"bottle = yarp.Bottle(); [bottle.addString(s) for s in {value[:1]!r}]; 0")
                 if len(value) > 1:
                     peer.do("bottle.addFloat64(1.5)")
                 peer.begin("port.write(bottle)")
-                assert port.read(timeout=5).value == value, carrier
+                assert port.read(timeout=HANG).value == value, carrier
                 assert peer.end()
             peer.do("yarp.Network.disconnect('/cpp', '/ours')")
 
@@ -118,7 +118,7 @@ def test_envelopes_that_are_no_stamps(peer: CppProgram) -> None:
         for text in ("7 8 nine", '(a b) "c d"'):
             peer.do(f"envelope = yarp.Bottle('{text}'); port.setEnvelope(envelope); 0")
             peer.begin("port.write(yarp.Bottle('x'))")
-            message = port.read(timeout=5)
+            message = port.read(timeout=HANG)
             assert message.envelope == text
             assert peer.end()
         port.connect("/cpp")
@@ -145,7 +145,7 @@ def test_many_in_order(peer: CppProgram) -> None:
             )
             for number in range(count):
                 port.write([number, "some text"])
-            assert port.flush(timeout=10)
+            assert port.flush(timeout=HANG)
             assert peer.end() is True
             port.disconnect("/cpp")
             assert peer.do(f"yarp.Network.connect('/cpp', '/ours', '{carrier}')")
@@ -155,7 +155,7 @@ def test_many_in_order(peer: CppProgram) -> None:
                 "    bottle.clear(); bottle.addInt32(number); assert port.write(bottle)"
             )
             for number in range(count):
-                assert port.read(timeout=5).value == [number]
+                assert port.read(timeout=HANG).value == [number]
             peer.end()
             peer.do("yarp.Network.disconnect('/cpp', '/ours')")
 
@@ -182,10 +182,10 @@ def test_one_sender_to_many(peer: CppProgram) -> None:
         port.write(["to all", 1])
         assert peer.end() == ['"to all" 1'] * 4
         for reader in ours:
-            assert reader.read(timeout=5).value == Bottle(["to all", 1])
+            assert reader.read(timeout=HANG).value == Bottle(["to all", 1])
         # Whoever sends to the group when the first receiver goes, the others go on hearing.
         port.disconnect("/cpp0")
         peer.begin("bottle = yarp.Bottle(); ports[1].read(bottle); bottle.toString()")
         port.write(["again"])
         assert peer.end() == "again"
-        assert ours[0].read(timeout=5).value == ["again"]
+        assert ours[0].read(timeout=HANG).value == ["again"]

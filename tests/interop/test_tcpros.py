@@ -4,7 +4,7 @@ import pytest
 from support.cpp import CppYarp
 from support.cpp_carrier import carrier_program
 from support.peer import brings
-from support.wait import wait_until
+from support.wait import HANG, wait_until
 
 import yarpy
 
@@ -35,5 +35,5 @@ def test_a_cpp_writer_to_a_port_without_a_type(our_names: CppYarp, program: str)
         assert "Success" in said.stdout, said
         for number in range(3):
             peer.write_line(f"hello {number}")
-            assert port.read(timeout=10).value == ["hello", number]
+            assert port.read(timeout=HANG).value == ["hello", number]
         assert peer.returncode is None

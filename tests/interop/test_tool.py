@@ -7,7 +7,7 @@ from collections.abc import Iterator
 import pytest
 from support.cpp import CppYarp
 from support.process import Process
-from support.wait import wait_until
+from support.wait import HANG, wait_until
 
 import yarpy
 from yarpy import Stamp
@@ -29,14 +29,14 @@ def test_write_to_us(network: CppYarp) -> None:
         network.popen("write", "/writer", "/ours") as writer,
     ):
         writer.write_line('1 2.5 "a b" (c [d]) {1 2}')
-        message = port.read(timeout=10)
+        message = port.read(timeout=HANG)
         assert message.value == [1, 2.5, "a b", ["c", yarpy.Vocab("d")], b"\x01\x02"]
         assert (message.source, port.inputs[0].carrier) == ("/writer", "tcp")
         for carrier in CARRIERS:
             assert network.run("connect", "/writer", "/ours", carrier).returncode == 0
             wait_until(lambda: [link.carrier for link in port.inputs] == [carrier], what=carrier)  # noqa: B023
             writer.write_line(f"over {carrier}")
-            assert port.read(timeout=5).value == ["over", carrier]
+            assert port.read(timeout=HANG).value == ["over", carrier]
         writer.end_input()
         assert writer.wait() == 0
         wait_until(lambda: not port.inputs, what="the writer has left")
@@ -74,9 +74,9 @@ def test_connect_and_disconnect(
             "",
         )
         assert [link.carrier for link in source.outputs] == [carrier]
-        assert sink.wait_for_inputs(timeout=5)
+        assert sink.wait_for_inputs(timeout=HANG)
         source.write([carrier])
-        assert sink.read(timeout=5).value == [carrier]
+        assert sink.read(timeout=HANG).value == [carrier]
         # C++ compares the carrier, and asks for tcp.
         assert network.run("exists", "/from", "/to").returncode == (carrier != "tcp")
         answer = network.run("disconnect", "/from", "/to")
@@ -153,7 +153,7 @@ def test_admin(network: CppYarp, ports: tuple[yarpy.Port, yarpy.BufferedPort]) -
 def test_quality_of_service(network: CppYarp, ports: tuple[yarpy.Port, yarpy.BufferedPort]) -> None:
     source, sink = ports
     source.connect("/to")
-    assert sink.wait_for_inputs(timeout=5)
+    assert sink.wait_for_inputs(timeout=HANG)
     set_ = network.run("priority-qos", "set", "/from", "/to", "--src", "LEVEL:HIGH")
     assert set_.returncode == 0
     answer = network.run("priority-qos", "get", "/from", "/to").stdout
@@ -191,4 +191,4 @@ def test_ports_without_any_name_server(cpp: CppYarp) -> None:
         CppYarp(cpp.root, cpp.home).popen("write", "/nameless", f"/{port.address}") as writer,
     ):
         writer.write_line("hello")
-        assert port.read(timeout=10).value == ["hello"]
+        assert port.read(timeout=HANG).value == ["hello"]

@@ -5,6 +5,7 @@ import math
 import numpy as np
 from support.cpp import CppYarp
 from support.cpp_program import CppProgram
+from support.wait import HANG
 
 import yarpy
 from yarpy import (
@@ -55,7 +56,7 @@ def test_elements_from_cpp(side: CppProgram, port: yarpy.Port) -> None:
             side.begin(
                 f"bottle = yarp.Bottle()\nfor _ in range({count}): bottle.{add}\nport.write(bottle)"
             )
-            message = port.read(timeout=5)
+            message = port.read(timeout=HANG)
             assert side.end()
             found = message.as_(Bottle)
             assert found == [value] * count
@@ -63,7 +64,7 @@ def test_elements_from_cpp(side: CppProgram, port: yarpy.Port) -> None:
             assert found.to_bytes() == bytes(message.payload)
     adding = "; ".join(f"bottle.{add}" for _, add, _, _ in ELEMENTS)
     side.begin(f"bottle = yarp.Bottle(); {adding}\nport.write(bottle)")
-    message = port.read(timeout=5)
+    message = port.read(timeout=HANG)
     assert side.end()
     assert message.value == [value for *_, value in ELEMENTS]
     assert message.value.to_bytes() == bytes(message.payload)
@@ -97,7 +98,7 @@ def test_nested_lists_both_ways(side: CppProgram, port: yarpy.Port) -> None:
     for text in NESTED:
         ours = Bottle.from_text(text)
         side.begin(f"bottle = yarp.Bottle({text!r})\nport.write(bottle)\nbottle.toString()")
-        message = port.read(timeout=5)
+        message = port.read(timeout=HANG)
         assert message.as_(Bottle) == ours
         assert bytes(message.payload) == ours.to_bytes()
         assert side.end() == ours.to_text()
@@ -114,7 +115,7 @@ def test_single_values(side: CppProgram, port: yarpy.Port) -> None:
     values = [("5", 5), ("2.5", 2.5), ("'a b'", "a b")]
     for make, value in values:
         side.begin(f"port.write(yarp.Value({make}))")
-        assert port.read(timeout=5).value == value
+        assert port.read(timeout=HANG).value == value
         assert side.end()
         side.begin("read(yarp.Value()).toString()")
         port.write(value)
@@ -132,7 +133,7 @@ def test_vectors(side: CppProgram, port: yarpy.Port) -> None:
         f"for i, number in enumerate({numbers!r}): vector.set(i, number)\n"
         "port.write(vector)"
     )
-    seen = port.read(timeout=5)
+    seen = port.read(timeout=HANG)
     assert side.end()
     assert isinstance(seen.value, Vector)
     assert seen.value == numbers
@@ -145,7 +146,7 @@ def test_vectors(side: CppProgram, port: yarpy.Port) -> None:
     side.begin(
         "vector = yarp.VectorInt()\nfor i in (5, -6): vector.push_back(i)\nport.write(vector)"
     )
-    message = port.read(timeout=5)
+    message = port.read(timeout=HANG)
     assert side.end()
     assert message.as_(np.ndarray).tolist() == [5, -6]
     assert message.as_(np.ndarray).dtype == "int32"
@@ -156,7 +157,7 @@ def test_vectors(side: CppProgram, port: yarpy.Port) -> None:
     large = np.linspace(0, 1, 200_000)
     side.begin("vector = read(yarp.Vector()); port.write(vector); vector.size()")
     port.write(large)
-    assert (port.read(timeout=5).as_(np.ndarray) == large).all()
+    assert (port.read(timeout=HANG).as_(np.ndarray) == large).all()
     assert side.end() == len(large)
 
 
@@ -167,7 +168,7 @@ def test_matrices(side: CppProgram, port: yarpy.Port) -> None:
         "for i in range(6): matrix.set(i // 3, i % 3, i / 8)\n"
         "port.write(matrix)"
     )
-    message = port.read(timeout=5)
+    message = port.read(timeout=HANG)
     assert side.end()
     assert (message.as_(Matrix).array == array).all()
     assert (message.as_(np.ndarray) == array).all()
@@ -193,7 +194,7 @@ def test_sounds(cpp: CppYarp, side: CppProgram, port: yarpy.Port) -> None:
         port.write(sound.to_bottle() if cpp.version < (3, 9) else sound)
         assert side.end() == [44100, array.tolist()]
         side.begin("port.write(sound)")
-        assert port.read(timeout=5).as_(Sound) == sound
+        assert port.read(timeout=HANG).as_(Sound) == sound
         assert side.end()
 
 
@@ -202,7 +203,7 @@ def test_properties(side: CppProgram, port: yarpy.Port) -> None:
         "p = yarp.Property(); p.put('b', 2.5); p.put('a', 5); p.put('s', 'x y')\n"
         "p.addGroup('g').put('k', 1)\nport.write(p)"
     )
-    message = port.read(timeout=5)
+    message = port.read(timeout=HANG)
     assert side.end()
     assert message.as_(dict) == {"a": 5, "b": 2.5, "s": "x y", "g": ["k", 1]}
     assert message.as_(Property).to_bytes() == bytes(message.payload)
@@ -226,7 +227,7 @@ def test_properties(side: CppProgram, port: yarpy.Port) -> None:
 
 def test_dicts_inside_lists(side: CppProgram, port: yarpy.Port) -> None:
     side.begin("b = yarp.Bottle('x'); b.addDict().put('k', 5); port.write(b)")
-    assert port.read(timeout=5).value == ["x", {"k": 5}]
+    assert port.read(timeout=HANG).value == ["x", {"k": 5}]
     assert side.end()
     side.begin(
         "b = read(yarp.Bottle()); [b.get(1).isDict(), b.get(1).asDict().find('k').asInt32()]"
@@ -237,7 +238,7 @@ def test_dicts_inside_lists(side: CppProgram, port: yarpy.Port) -> None:
 
 def test_stamps_as_messages(side: CppProgram, port: yarpy.Port) -> None:
     side.begin("port.write(yarp.Stamp(7, 8.25))")
-    assert port.read(timeout=5).as_(Stamp) == Stamp(7, 8.25)
+    assert port.read(timeout=HANG).as_(Stamp) == Stamp(7, 8.25)
     assert side.end()
     side.begin("stamp = read(yarp.Stamp()); [stamp.getCount(), stamp.getTime()]")
     port.write(Stamp(7, 8.25))
@@ -256,5 +257,5 @@ def test_text_carriers_carry_what_text_can(side: CppProgram) -> None:
         assert side.end() == "(a 1) (b (1 2))"
         port.listen_to("/cpp", "text")
         side.begin("port.write(yarp.Bottle('1 (2.5 x) [set]'))")
-        assert port.read(timeout=5).value == [1, [2.5, "x"], Vocab("set")]
+        assert port.read(timeout=HANG).value == [1, [2.5, "x"], Vocab("set")]
         assert side.end()

@@ -7,6 +7,7 @@ from urllib.parse import urlsplit
 
 import pytest
 from support.cpp_program import CppProgram
+from support.wait import HANG
 
 import yarpy
 from yarpy.names.client import YarpNameClient
@@ -40,7 +41,7 @@ SAID = [
 
 def body(host: str, port: int, target: str) -> bytes:
     """What comes after the header; C++ closes the connection, ours has a length."""
-    connection = HTTPConnection(host, port, timeout=10)
+    connection = HTTPConnection(host, port, timeout=HANG)
     connection.request("GET", target)
     response = connection.getresponse()
     assert response.status == 200

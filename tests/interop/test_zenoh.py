@@ -77,18 +77,18 @@ def test_messages_answers_and_administration(lab: Lab) -> None:
         connection = yarpy.connect("/out", "/in", names=lab.near)
         for number in range(300):
             out.write([number])
-        assert [in_.read(timeout=10).value[0] for _ in range(300)] == [*range(300)]
+        assert [in_.read(timeout=HANG).value[0] for _ in range(300)] == [*range(300)]
         large = random.Random(1).randbytes(5_000_000)
         out.write(large)
-        assert in_.read(timeout=10).value == large
+        assert in_.read(timeout=HANG).value == large
         with yarpy.RpcClient("/adder", names=lab.near) as client:
-            assert client.ask([1, 2, 3], timeout=10).value == [6]
+            assert client.ask([1, 2, 3], timeout=HANG).value == [6]
         assert yarpy.admin("/in", "list", "in", names=lab.near)[0] == "/out"
         assert yarpy.exists("/out", "/in", names=lab.near)
         connection.qos = yarpy.Qos(packets="HIGH")
         assert connection.qos.packets == "AF42"
         out.write("with another priority")
-        assert in_.read(timeout=10).value == "with another priority"
+        assert in_.read(timeout=HANG).value == "with another priority"
         assert yarpy.disconnect("/out", "/in", names=lab.far)
         wait_until(lambda: not (out.outputs or in_.inputs))
 
@@ -108,11 +108,11 @@ def test_a_slow_reader_holds_up_its_own_sender_alone(lab: Lab) -> None:
         sender.start()
         for number in range(20):
             out.write([number, large])
-            assert fast.read(timeout=10).value[0] == number
+            assert fast.read(timeout=HANG).value[0] == number
         assert sender.is_alive()
         for _ in range(20):
-            assert slow.read(timeout=10).value == large
-        sender.join(10)
+            assert slow.read(timeout=HANG).value == large
+        sender.join(HANG)
 
 
 def test_a_router_that_was_restarted_brings_names_and_connections_back(lab: Lab) -> None:
@@ -123,7 +123,7 @@ def test_a_router_that_was_restarted_brings_names_and_connections_back(lab: Lab)
         wait_until(lambda: lab.near.query("/in"))
         out.connect("/in")
         out.write([0])
-        assert in_.read(timeout=10).value == [0]
+        assert in_.read(timeout=HANG).value == [0]
         lab.stop()
         sent = 1
         wait_until(lambda: not out.outputs)
@@ -138,7 +138,7 @@ def test_a_router_that_was_restarted_brings_names_and_connections_back(lab: Lab)
         wait_until(arrives, 30)
         came = []
         while in_.waiting:
-            came.append(in_.read(timeout=10).value[0])
+            came.append(in_.read(timeout=HANG).value[0])
         assert came == [*range(came[0], came[0] + len(came))]
         assert lab.near.query("/in")
 
@@ -155,7 +155,7 @@ def test_what_needs_a_direct_way_says_so(lab: Lab, monkeypatch: pytest.MonkeyPat
         for carrier in ("fast_tcp", "text_ack", "websocket"):
             out.connect("/in", carrier)
             out.write([carrier])
-            assert in_.read(timeout=10).value == [carrier]
+            assert in_.read(timeout=HANG).value == [carrier]
         with pytest.raises(LocalProtocolError, match="tls/HOST"):
             out.connect("/in", "tls")
 
@@ -214,7 +214,7 @@ def test_where_tls_is_required_the_links_of_zenoh_are(
         wait_until(lambda: names.query("/in"))
         out.connect("/in")
         out.write("in tls from router to router")
-        assert in_.read(timeout=10).value == "in tls from router to router"
+        assert in_.read(timeout=HANG).value == "in tls from router to router"
     names.close()
     others.close()
     close(router)
@@ -243,7 +243,7 @@ def test_cpp_programs_take_part(
         assert programs.run("exists", "/ours/in").returncode == 0
         written = programs.run("write", "/cpp/out", "/ours/in", input="1 2 (a b)\n")
         assert written.returncode == 0
-        assert in_.read(timeout=20).value == [1, 2, ["a", "b"]]
+        assert in_.read(timeout=HANG).value == [1, 2, ["a", "b"]]
         answer = programs.run("rpc", "/ours/rpc", input="hello\n").stdout
         assert "Response: echo hello" in answer
         out.connect("/cpp/in")
@@ -280,7 +280,7 @@ def test_the_access_list_of_the_page(tmp_path: Path, monkeypatch: pytest.MonkeyP
         with yarpy.Port("/robot/out", names=third) as out:
             out.connect("/robot/in")
             out.write("from a robot")
-            assert in_.read(timeout=10).value == "from a robot"
+            assert in_.read(timeout=HANG).value == "from a robot"
     for one in (robot, guest, third):
         one.close()
     close(router)

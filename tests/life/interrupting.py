@@ -20,6 +20,8 @@ from dataclasses import dataclass
 from pathlib import Path
 from types import FrameType
 
+from support.wait import HANG
+
 from yarpy.errors import Timeout
 from yarpy.link.receive.inbound import Inbound
 from yarpy.nameserver.local import LocalNames
@@ -146,7 +148,7 @@ def _read_on(
     complete: bool,
 ) -> None:
     """Read until there were enough interrupts, or nothing comes any more."""
-    in_.wait_for_inputs(timeout=10)
+    in_.wait_for_inputs(timeout=HANG)
     link, last = source_of(in_), -1
     while alarm.raised < interrupts:
         try:

@@ -20,6 +20,7 @@ from typing import Any, Self
 
 import pytest
 from support.timer import beating
+from support.wait import HANG
 
 import yarpy
 from yarpy.names.default import DEFAULT
@@ -248,7 +249,7 @@ def test_whoever_ends_a_port_wakes_its_calls(kind: str, method: str, end: str, n
         ended = time.monotonic()
         with Stalls() as stalls:
             getattr(port, end)()
-            thread.join(10.0)
+            thread.join(HANG)
         if blocked:
             back, error = over[0]
             assert back - ended <= SLACK + stalls.seconds

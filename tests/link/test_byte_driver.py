@@ -8,6 +8,7 @@ import time
 
 import pytest
 from support.transport import ScriptTransport, scripted
+from support.wait import HANG
 
 from yarpy.errors import Timeout
 from yarpy.link.begin.greeting import driver_of
@@ -32,7 +33,7 @@ def test_flush_by_a_deadline_leaves_the_rest_for_the_next() -> None:
     found = bytearray()
     while len(found) < len(data) + 7:
         found += far.recv(1 << 20)
-    thread.join(5)
+    thread.join(HANG)
     assert bytes(found) == data + b"the end"
     assert driver.bytes_out == len(found)
     assert not driver.stream.pending

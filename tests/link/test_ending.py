@@ -6,6 +6,7 @@ import threading
 import time
 
 import pytest
+from support.wait import HANG
 
 from yarpy.errors import PortClosed
 from yarpy.link.ending import NEVER, SLICE, Ending, left, moment
@@ -41,12 +42,12 @@ def test_waiting_for_a_lock_ends() -> None:
     took: list[bool] = []
     thread = in_thread(lambda: took.append(ending.acquire(lock)))
     ending.begin("it is over")
-    thread.join(5)
+    thread.join(HANG)
     assert took == [False]
     ending.resume()
     thread = in_thread(lambda: took.append(ending.acquire(lock)))
     lock.release()
-    thread.join(5)
+    thread.join(HANG)
     assert took == [False, True]
 
 
@@ -60,7 +61,7 @@ def test_waiting_for_a_condition_ends() -> None:
 
     thread = in_thread(wait)
     ending.begin("it is over")
-    thread.join(5)
+    thread.join(HANG)
     assert found == [False]
     with condition:
         assert not NEVER.wait_for(condition, lambda: False, moment(0.01))

@@ -7,7 +7,7 @@ from collections.abc import Iterator
 
 import pytest
 from support.system import NO_MARKS, NO_SCHEDULING
-from support.wait import wait_until
+from support.wait import HANG, wait_until
 
 import yarpy
 from yarpy.link import qos
@@ -80,7 +80,7 @@ def test_output_that_is_scheduled_gets_its_thread(ports, asked) -> None:
     assert asked == [(link.thread.native_id, 1, 30)]
     for number in range(10):
         assert out.write([number]) == 1
-        assert in_.read(timeout=5).value == [number]
+        assert in_.read(timeout=HANG).value == [number]
     out.outputs[0].qos = Qos(priority=31)  # the policy stays
     assert asked[-1] == (link.thread.native_id, 1, 31)
     out.outputs[0].qos = Qos("SCHED_OTHER")
@@ -92,13 +92,13 @@ def test_input_that_is_scheduled_is_read_by_its_thread(ports, asked) -> None:
     out, in_ = ports
     for number in range(20):  # the reader gets the lease
         out.write([number])
-        in_.read(timeout=5)
+        in_.read(timeout=HANG)
     in_.inputs[0].qos = Qos("SCHED_RR", 7)
     link = in_.inputs[0]._link
     assert asked == [(link.thread.native_id, 2, 7)]
     for number in range(20):
         out.write([number])
-        assert in_.read(timeout=5).value == [number]
+        assert in_.read(timeout=HANG).value == [number]
     assert not link.turn.leased
 
 
@@ -110,7 +110,7 @@ def test_refusal_says_what_to_do_and_changes_nothing(ports, refusing) -> None:
             connection.qos = Qos("SCHED_FIFO", 30)
         assert connection._link.sched == Sched()
     out.write([1])
-    assert in_.read(timeout=5).value == [1]
+    assert in_.read(timeout=HANG).value == [1]
 
 
 def test_wrong_values_are_refused_before_anything_is_changed(ports) -> None:

@@ -113,7 +113,7 @@ def test_what_does_not_fit_is_dropped_counted_and_told_once(
         for _ in range(3):
             out.write(["no", "such", "thing"])
         if fits_everything:
-            assert in_.read(timeout=5)
+            assert in_.read(timeout=HANG)
             return
         link = out.outputs[0] if side == "send" else in_.inputs[0]
         wait_until(lambda: link.stats.drops == 3)
@@ -129,7 +129,7 @@ def test_throttled_stream() -> None:
     ):
         out.connect("/in", "tcp+send.throttleDown+period_ms.100000")
         assert [out.write(number) for number in range(5)] == [1, 0, 0, 0, 0]
-        assert in_.read(timeout=5).value == 0
+        assert in_.read(timeout=HANG).value == 0
         assert out.outputs[0].stats.drops == 4
 
 

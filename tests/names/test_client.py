@@ -10,6 +10,7 @@ import pytest
 from support.lasted import lasted
 from support.name_line import new_service, serve_names
 from support.port import free_port
+from support.wait import HANG
 
 from yarpy.contact import Contact
 from yarpy.data.bottle import Bottle
@@ -55,7 +56,7 @@ class Scripted:
         with contextlib.suppress(OSError):
             self._listener.shutdown(socket.SHUT_RDWR)  # wakes a thread in accept
         self._listener.close()
-        self._thread.join(5)
+        self._thread.join(HANG)
 
 
 END = b"*** end of message\r\n"

@@ -5,6 +5,7 @@ import threading
 
 import pytest
 from support.port import free_port
+from support.wait import HANG
 
 import yarpy
 from yarpy.errors import AddressError, NoNameServer
@@ -86,7 +87,7 @@ def test_ports_and_a_server_that_share_a_key_talk_and_others_are_refused(place):
     ):
         writer.connect("/safe/in")
         writer.write(["hello"])
-        assert reader.read(timeout=5).value == ["hello"]
+        assert reader.read(timeout=HANG).value == ["hello"]
         with socket.create_connection((server.host, server.port), 5) as stranger:
             stranger.settimeout(5)
             assert len(stranger.recv(40, socket.MSG_WAITALL)) == 40
@@ -118,7 +119,7 @@ def test_proving_stops_at_the_last_byte_of_the_proof(place):
         ours.settimeout(5)
         prove(ours)
         assert ours.recv(7, socket.MSG_WAITALL) == b"Welcome"
-        thread.join(5)
+        thread.join(HANG)
 
 
 def test_a_server_that_is_gone_is_an_error_that_names_its_address(monkeypatch):

@@ -7,6 +7,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from support.name_line import new_service
+from support.wait import HANG
 
 from yarpy.contact import Contact
 from yarpy.data.bottle import Bottle
@@ -411,18 +412,18 @@ def test_others_are_served_while_a_port_is_asked_whether_it_lives() -> None:
 
     def is_alive(contact: Contact) -> bool:
         asked.set()
-        return goes_on.wait(10)
+        return goes_on.wait(HANG)
 
     service = NameService(NameStore("127.0.0.1", 21100), Topology(lambda: 0.0), is_alive)
     replies = [ask(service, "register /x")]
     slow = threading.Thread(target=lambda: replies.append(ask(service, "register /x")))
     slow.start()
-    assert asked.wait(10)
+    assert asked.wait(HANG)
     others = threading.Thread(target=lambda: ask(service, "unregister /x", "register /y"))
     others.start()
-    others.join(10)
+    others.join(HANG)
     assert not others.is_alive()
     goes_on.set()
-    slow.join(10)
+    slow.join(HANG)
     assert replies[1] == replies[0], "the number of before, or a new one: it has been unregistered"
     assert ask(service, "query /x") == replies[1]

@@ -13,6 +13,7 @@ from hypothesis import strategies as st
 from support.lasted import lasted
 from support.name_database import EVERYTHING, Files, say
 from support.name_line import new_service
+from support.wait import HANG
 
 from yarpy.contact import Contact
 from yarpy.data.bottle import Bottle
@@ -242,7 +243,7 @@ def test_those_who_wait_share_a_transaction(files: Files, monkeypatch: pytest.Mo
     def slow(changes: PortChanges) -> None:
         writes.append(len(changes.ports))
         begun.set()
-        assert go_on.wait(10)
+        assert go_on.wait(HANG)
         save(changes)
 
     monkeypatch.setattr(database._ports, "save", slow)
@@ -255,15 +256,15 @@ def test_those_who_wait_share_a_transaction(files: Files, monkeypatch: pytest.Mo
     noted = threading.Semaphore(0)
     threads = [threading.Thread(target=register, args=(f"/p{n}",)) for n in range(20)]
     threads[0].start()
-    assert begun.wait(10)
+    assert begun.wait(HANG)
     for thread in threads[1:]:
         thread.start()
     for _ in threads:
-        assert noted.acquire(timeout=10)
+        assert noted.acquire(timeout=HANG)
     assert all(thread.is_alive() for thread in threads)  # nobody is told before the disk has it
     go_on.set()
     for thread in threads:
-        thread.join(10)
+        thread.join(HANG)
     assert writes == [1, 19]
     service.answer(Bottle(["query", "/p1"]))
     database.settle()  # a question waits for nobody

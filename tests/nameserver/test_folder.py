@@ -11,6 +11,7 @@ from pathlib import Path
 
 import pytest
 from support.system import NO_LINKS
+from support.wait import HANG
 
 import yarpy
 from yarpy.carriers.web.http.page import Pieces
@@ -111,7 +112,7 @@ def test_large_file_is_sent_in_pieces(site: Path, tmp_path: Path) -> None:
     assert isinstance(page.body, Pieces)
     assert max(map(len, page.body.read())) == PIECE
     with yarpy.NameServer(web=site) as server:
-        client = HTTPConnection("127.0.0.1", server.port, timeout=20)
+        client = HTTPConnection("127.0.0.1", server.port, timeout=HANG)
         tracemalloc.start()
         try:
             client.request("GET", "/web/large.bin")
@@ -139,7 +140,7 @@ def test_file_that_becomes_shorter_while_it_is_sent(
     (site / "large.bin").write_bytes(bytes(1 << 20))
     monkeypatch.setattr(folder, "_read", lambda path: iter([b"x" * 1000]))
     with yarpy.NameServer(web=site) as server:
-        client = HTTPConnection("127.0.0.1", server.port, timeout=20)
+        client = HTTPConnection("127.0.0.1", server.port, timeout=HANG)
         client.request("GET", "/web/large.bin")
         with pytest.raises(IncompleteRead):
             client.getresponse().read()
@@ -158,7 +159,7 @@ def test_no_directory(site: Path) -> None:
 
 def test_name_server_shows_files(site: Path) -> None:
     with yarpy.NameServer(web=site) as server:
-        connection = HTTPConnection("127.0.0.1", server.port, timeout=10)
+        connection = HTTPConnection("127.0.0.1", server.port, timeout=HANG)
 
         def get(path: str) -> tuple[int, str | None, bytes]:
             connection.request("GET", path)
@@ -181,7 +182,7 @@ def test_name_server_shows_files(site: Path) -> None:
 
 def test_name_server_without_files() -> None:
     with yarpy.NameServer() as server:
-        connection = HTTPConnection("127.0.0.1", server.port, timeout=10)
+        connection = HTTPConnection("127.0.0.1", server.port, timeout=HANG)
         connection.request("GET", "/web/main.css")
         assert b"color-scheme" in connection.getresponse().read()
         connection.close()

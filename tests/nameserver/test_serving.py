@@ -21,7 +21,7 @@ from support.difference import LIVE_DIFFERENT
 from support.lasted import lasted
 from support.port import free_block
 from support.steps import chop
-from support.wait import wait_until
+from support.wait import HANG, wait_until
 
 import yarpy
 from yarpy import network, registry
@@ -62,12 +62,12 @@ def test_who_comes_before_it_is_open_waits(monkeypatch: pytest.MonkeyPatch) -> N
     starting = threading.Thread(target=lambda: servers.append(NameServer(number)))
     starting.start()
     try:
-        assert listens.wait(5)
+        assert listens.wait(HANG)
         with socket.create_connection(("127.0.0.1", number), 5) as client:
             client.sendall(b"NAME_SERVER query /root\n")
             assert client.recv(1000).startswith(b"registration name /root ip 127.0.0.1 port ")
     finally:
-        starting.join(5)
+        starting.join(HANG)
         servers[0].close()
 
 
@@ -269,7 +269,7 @@ def test_ports_of_this_process_find_it() -> None:
         with yarpy.Port("/a") as a, yarpy.Port("/b") as b:
             a.connect("/b")
             a.write([1])
-            assert b.read(timeout=5).value == [1]
+            assert b.read(timeout=HANG).value == [1]
             assert [c.name for c in server.client.list("/")][:3] == ["/a", "/b", "/root"]
         assert server.client.query("/a") is None
 
@@ -307,8 +307,8 @@ def test_server_is_an_ordinary_port_too() -> None:
         assert network.admin("/root", "ver") == [yarpy.Vocab("ver"), 1, 2, 3]
         assert network.ping("/root")[0] == f"This is /root at tcp://127.0.0.1:{server.port}/"
         with yarpy.RpcClient("/root") as client:
-            assert client.call("bot", "query", "/root", timeout=5)[0] == "port"
-            (text,) = client.call("query", "/root", timeout=5)
+            assert client.call("bot", "query", "/root", timeout=HANG)[0] == "port"
+            (text,) = client.call("query", "/root", timeout=HANG)
             assert text.startswith("registration name /root ip 127.0.0.1 port")
 
 
@@ -325,7 +325,7 @@ def test_commands_of_several_clients_at_once() -> None:
         for thread in threads:
             thread.start()
         for thread in threads:
-            thread.join(20)
+            thread.join(HANG)
         found = list(server.client.list("/t"))
         assert len(found) == 150
         assert len({c.port for c in found}) == 150
@@ -386,14 +386,14 @@ def test_topic_joins_publishers_and_subscribers() -> None:
         assert network.connect("/talker", "topic://news").reply == "connection to topic added."
         network.connect("topic://news", "/first")
         network.connect("topic://news", "/second")
-        assert talker.wait_for_outputs(2, timeout=5)
+        assert talker.wait_for_outputs(2, timeout=HANG)
         talker.write([1])
-        assert first.read(timeout=5).value == second.read(timeout=5).value == [1]
+        assert first.read(timeout=HANG).value == second.read(timeout=HANG).value == [1]
         with yarpy.Port("/late") as late:
             network.connect("topic://news", "/late")
-            assert talker.wait_for_outputs(3, timeout=5)
+            assert talker.wait_for_outputs(3, timeout=HANG)
             talker.write([2])
-            assert late.read(timeout=5).value == [2]
+            assert late.read(timeout=HANG).value == [2]
 
 
 def test_persistent_connection_comes_with_its_ports() -> None:
@@ -402,9 +402,9 @@ def test_persistent_connection_comes_with_its_ports() -> None:
         assert reply == [yarpy.Vocab("ok")]
         for _ in range(2):
             with yarpy.Port("/in") as in_, yarpy.Port("/out") as out:
-                assert out.wait_for_outputs(timeout=5)
+                assert out.wait_for_outputs(timeout=HANG)
                 out.write([1])
-                assert in_.read(timeout=5).value == [1]
+                assert in_.read(timeout=HANG).value == [1]
         reply = network.ask_server(server.client, ["unsubscribe", "/out", "/in"])
         assert reply == [yarpy.Vocab("ok")]
         with yarpy.Port("/in"), yarpy.Port("/out") as out:

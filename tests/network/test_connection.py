@@ -9,7 +9,7 @@ import time
 import pytest
 from support.lasted import lasted
 from support.port import free_port
-from support.wait import wait_until
+from support.wait import HANG, wait_until
 
 import yarpy
 from yarpy import network
@@ -71,9 +71,9 @@ def test_connect_and_disconnect(
         kind = out.outputs[0].carrier
         assert network.is_connected("/out", "/in", kind, names=names)
         assert not network.is_connected("/out", "/in", "mcast", names=names)
-        assert in_.wait_for_inputs(timeout=5)
+        assert in_.wait_for_inputs(timeout=HANG)
         out.write([1])
-        assert in_.read(timeout=5).value == [1]
+        assert in_.read(timeout=HANG).value == [1]
         assert network.disconnect("/out", "/in", names=names)
         assert not network.is_connected("/out", "/in", names=names)
         assert not network.disconnect("/out", "/in", names=names)
@@ -141,7 +141,7 @@ def test_waiting_for_both_ports(names: LocalNames) -> None:
             ports.append(Port(name, names=names))
 
     threading.Thread(target=open_later, daemon=True).start()
-    network.connect("/out", "/in", names=names, timeout=5)
+    network.connect("/out", "/in", names=names, timeout=HANG)
     assert network.is_connected("/out", "/in", names=names)
     for port in ports:
         port.close()
@@ -159,10 +159,10 @@ def test_waiting_for_a_port_and_a_connection(names: LocalNames) -> None:
     with Port("/out", names=names) as out:
         ports: list[Port] = []
         threading.Timer(0.1, lambda: ports.append(Port("/in", names=names))).start()
-        assert network.wait_for("/in", timeout=5, names=names)
+        assert network.wait_for("/in", timeout=HANG, names=names)
         assert not network.wait_for("/out", "/in", timeout=0.05, names=names)
         threading.Timer(0.1, out.connect, ("/in",)).start()
-        assert network.wait_for("/out", "/in", timeout=5, names=names)
+        assert network.wait_for("/out", "/in", timeout=HANG, names=names)
         ports[0].close()
 
 
@@ -179,7 +179,7 @@ def test_default_name_server_is_used() -> None:
         assert yarpy.is_connected("/out", "/in")
         assert yarpy.wait_for("/in", timeout=1)
         out.write([1])
-        assert in_.read(timeout=5).value == [1]
+        assert in_.read(timeout=HANG).value == [1]
         assert yarpy.query("/in") == in_.contact
         assert yarpy.ping("/in")
         assert yarpy.admin("/in", "ver")
@@ -190,7 +190,7 @@ def test_topics_are_asked_of_the_server() -> None:
     with yarpy.NameServer() as server, yarpy.Port("/out") as out, yarpy.Port("/in"):
         assert network.connect("/out", "topic://news").reply == "connection to topic added."
         network.connect("topic://news", "/in", "fast_tcp")
-        assert out.wait_for_outputs(timeout=5)
+        assert out.wait_for_outputs(timeout=HANG)
         assert network.disconnect("/out", "topic://news")
         assert "news" not in network.ask_server(server.client, ["subscribe"]).to_text().replace(
             "topic://news", ""

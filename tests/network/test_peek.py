@@ -6,7 +6,7 @@ from collections.abc import Iterator
 
 import numpy as np
 import pytest
-from support.wait import wait_until
+from support.wait import HANG, wait_until
 
 import yarpy
 from yarpy.network.peek import Peek
@@ -29,7 +29,7 @@ def test_the_newest_message_is_kept(names: yarpy.LocalNames, out: yarpy.Port) ->
             wait_until(lambda: peek.count == 1000)
             assert peek.newest is not None
             assert peek.newest.value == yarpy.Bottle([999])
-            assert [inlet.read(timeout=5).value[0] for _ in range(1000)] == list(range(1000))
+            assert [inlet.read(timeout=HANG).value[0] for _ in range(1000)] == list(range(1000))
         wait_until(lambda: len(out.outputs) == 1)
         assert out.outputs[0].stats.drops == 0
 

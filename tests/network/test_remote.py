@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 from support.system import NO_MARKS
-from support.wait import wait_until
+from support.wait import HANG, wait_until
 
 import yarpy
 from yarpy import network
@@ -70,7 +70,7 @@ def test_a_topic_is_left_and_has_no_numbers() -> None:
         sending = yarpy.connect("/out", "topic://news")
         assert sending.reply == "connection to topic added."
         hearing = yarpy.connect("topic://news", "/in")
-        assert in_.wait_for_inputs(timeout=10)
+        assert in_.wait_for_inputs(timeout=HANG)
         with pytest.raises((UnknownName, LocalProtocolError)):
             _ = sending.stats
         rules = server.service.topology.subscriptions

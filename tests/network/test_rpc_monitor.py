@@ -12,7 +12,7 @@ import numpy as np
 import pytest
 from support.capture import load_capture
 from support.monitor import place
-from support.wait import wait_until
+from support.wait import HANG, wait_until
 
 import yarpy
 from yarpy.data.bottle import Bottle
@@ -38,7 +38,7 @@ def test_copies(names: yarpy.LocalNames, server: yarpy.RpcServer) -> None:
     ):
         client.connect("/srv", "tcp+send.rpc_monitor")
         assert client.call([1, "ping"]) == [Vocab("ok"), "echo", [1, "ping"]]
-        asked, answered = monitor.read(timeout=5), monitor.read(timeout=5)
+        asked, answered = monitor.read(timeout=HANG), monitor.read(timeout=HANG)
         assert asked is not None and answered is not None
         assert asked.source == "/client/monitor"
         ends = ["/client", "/srv"]
@@ -75,7 +75,7 @@ def test_bytes_of_cpp() -> None:
         for question in ([1, "ping"], ["hello"]):
             client.call(question)
         for data in recorded:
-            copy = monitor.read(timeout=5)
+            copy = monitor.read(timeout=HANG)
             assert copy is not None
             payload = bytearray(copy.to_bytes())
             payload[12:20] = data[-len(payload) :][12:20]  # the time
@@ -89,7 +89,7 @@ def test_another_port_looks_on(names: yarpy.LocalNames, server: yarpy.RpcServer)
     ):
         client.connect("/srv", "tcp+send.rpc_monitor+monitor./eyes")
         client.call("hi")
-        assert monitor.read(timeout=5)
+        assert monitor.read(timeout=HANG)
 
 
 def test_streams_are_copied_too_and_what_is_no_bottle_is_not(names: yarpy.LocalNames) -> None:
@@ -102,9 +102,9 @@ def test_streams_are_copied_too_and_what_is_no_bottle_is_not(names: yarpy.LocalN
         sound = yarpy.Sound(np.arange(5))
         out.write(sound)
         out.write(["hi"])
-        first = in_.read(timeout=5)
+        first = in_.read(timeout=HANG)
         assert first is not None and first.value == sound
-        copies: list[Any] = [monitor.read(timeout=5) for _ in range(2)]
+        copies: list[Any] = [monitor.read(timeout=HANG) for _ in range(2)]
         assert [copy.value[6] for copy in copies] == [["[unknown]"], ["hi"]]
 
 
@@ -123,9 +123,9 @@ def test_who_looks_on_may_go_away(
     with yarpy.RpcClient(names=names) as client:
         with yarpy.BufferedPort("/monitor", names=names):
             client.connect("/srv", "tcp+send.rpc_monitor")
-            assert client.call("hi", timeout=5)
+            assert client.call("hi", timeout=HANG)
         for _ in range(5):
-            assert client.call("hi", timeout=5)
+            assert client.call("hi", timeout=HANG)
 
 
 def test_who_looks_on_without_reading_holds_nobody_up(
@@ -136,7 +136,7 @@ def test_who_looks_on_without_reading_holds_nobody_up(
         [monitor] = client._hub.outputs.links[0].chain.monitors  # type: ignore[union-attr]
         asked = 0
         while not monitor.parameters()["drops"]:
-            assert client.call("hi", timeout=10)
+            assert client.call("hi", timeout=HANG)
             asked += 1
             assert asked < 5000
         assert 2 * asked > 1000
@@ -180,14 +180,14 @@ def test_calls_of_thrift(
     ):
         client._port.connect("/cam", "tcp+send.rpc_monitor+interface.camera")
         assert client.set_speed(1.5) is True
-        heard = [monitor.read(timeout=5) for _ in range(4)]
+        heard = [monitor.read(timeout=HANG) for _ in range(4)]
         assert heard[0] is not None and heard[0].value[7][0] == "getRemoteProtocolVersion"
         assert [message and message.value[3:] for message in heard[2:]] == [
             ["command", "client", "Camera", ["set_speed"], [1.5], []],
             ["reply", "rpc client", "Camera", ["set_speed"], [], ["ok"]],
         ]
         client._port.call("something", "else")
-        heard = [monitor.read(timeout=5) for _ in range(2)]
+        heard = [monitor.read(timeout=HANG) for _ in range(2)]
         assert heard[0] is not None and heard[0].value[5:] == [
             "RpcMonitor",
             ["[unknown]"],

@@ -165,7 +165,7 @@ def test_nonsense_costs_its_port_its_place(names: yarpy.LocalNames, nonsense: by
         with Sampler(names, timeout=0.3) as sampler:
             port = sampler.look().ports["/liar"]
             assert port.state in ("other", "silent")
-        thread.join(5)
+        thread.join(HANG)
 
 
 def test_a_liar_about_others_is_passed_over(names: yarpy.LocalNames) -> None:
@@ -191,7 +191,7 @@ def test_ports_of_cpp_tell_what_they_know(cpp: CppYarp) -> None:
     with CppProgram(cpp) as peer, yarpy.BufferedPort("/py/in") as in_:
         peer.do("port = yarp.BufferedPortBottle(); port.open('/cpp/out')")
         peer.do("yarp.Network.connect('/cpp/out', '/py/in', 'fast_tcp')")
-        assert in_.wait_for_inputs(timeout=5)
+        assert in_.wait_for_inputs(timeout=HANG)
         with Sampler() as sampler:
             for _ in range(2):
                 snapshot = sampler.look()

@@ -6,6 +6,7 @@ from typing import Any
 
 import pytest
 from support.monitor import place
+from support.wait import HANG
 
 import yarpy
 from yarpy.data.value import Vocab
@@ -29,7 +30,7 @@ def test_messages_and_replies() -> None:
         for port, ends, forward in ((there, ["/a", "/b"], "ok"), (back, ["/b", "/a"], "fail")):
             told: list[Any] = []
             while not told or told[-1].value[6] == 0:
-                message = port.read(timeout=10)
+                message = port.read(timeout=HANG)
                 assert message is not None
                 told.append(message)
             _, *facts, size, count = told[-1].value

@@ -10,7 +10,7 @@ import weakref
 
 import pytest
 from support.lasted import lasted
-from support.wait import wait_until
+from support.wait import HANG, wait_until
 
 from yarpy import network
 from yarpy.errors import (
@@ -71,9 +71,9 @@ def test_connecting_in_every_spelling(names: LocalNames) -> None:
             (connection,) = out.outputs
             assert (made.target, made.carrier) == seen
             assert (connection.target, connection.carrier) == seen
-            assert in_.wait_for_inputs(timeout=5)
+            assert in_.wait_for_inputs(timeout=HANG)
             out.write([target])
-            assert in_.read(timeout=5).value == [target]
+            assert in_.read(timeout=HANG).value == [target]
             assert out.disconnect(target)
             wait_until(lambda: not in_.inputs)
         assert not out.disconnect("/in")
@@ -117,9 +117,9 @@ def test_waiting_for_a_port_that_comes_later(names: LocalNames) -> None:
         assert lasted(started) < 2
         later: list[Port] = []
         threading.Timer(0.1, lambda: later.append(Port("/in", names=names))).start()
-        out.connect("/in", timeout=5)
+        out.connect("/in", timeout=HANG)
         assert out.write([1]) == 1
-        assert later[0].read(timeout=5).value == [1]
+        assert later[0].read(timeout=HANG).value == [1]
         later[0].close()
 
 
@@ -128,7 +128,7 @@ def test_asking_somebody_to_send_here(names: LocalNames) -> None:
         in_.listen_to("/out", "fast_tcp")
         assert [(o.target, o.carrier) for o in out.outputs] == [("/in", "fast_tcp")]
         out.write([1])
-        assert in_.read(timeout=5).value == [1]
+        assert in_.read(timeout=HANG).value == [1]
         with pytest.raises(UnknownName):
             in_.listen_to("/none")
         with (
@@ -143,8 +143,8 @@ def test_waiting_for_connections(names: LocalNames) -> None:
         assert not out.wait_for_outputs(timeout=0.02)
         assert not in_.wait_for_inputs(timeout=0.02)
         threading.Timer(0.05, out.connect, ("/in",)).start()
-        assert in_.wait_for_inputs(timeout=5)
-        assert out.wait_for_outputs(timeout=5)
+        assert in_.wait_for_inputs(timeout=HANG)
+        assert out.wait_for_outputs(timeout=HANG)
         assert not out.wait_for_outputs(2, timeout=0.02)
         for wrong in ("1", None, 1.5):
             with pytest.raises(TypeError, match="`count` is a number of connections, not"):
@@ -156,7 +156,7 @@ def test_connection_to_oneself_can_be_made_and_ended(names: LocalNames) -> None:
     with BufferedPort("/it", strict=True, names=names) as port:
         port.connect("/it")
         port.write([1])
-        assert port.read(timeout=5).value == [1]
+        assert port.read(timeout=HANG).value == [1]
         assert network.disconnect("/it", "/it", names=names)
         wait_until(lambda: not port.inputs and not port.outputs)
         port.connect("/it")

@@ -62,7 +62,7 @@ def test_what_is_written_to_nobody_is_counted(names: LocalNames) -> None:
         assert out.stats.unconnected == 7
         out.connect("/in")
         assert out.write([7]) == 1
-        in_.read(timeout=5)
+        in_.read(timeout=HANG)
         assert out.stats.unconnected == 7
         assert read(report(out._hub)[-1])[2].unconnected == 7
         [flow] = [one for one in flows(names) if not one.target]

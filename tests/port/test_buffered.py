@@ -34,7 +34,7 @@ def test_what_cannot_be_sent_is_the_writers_error_and_the_connection_goes_on(por
         with pytest.raises(TypeError):
             writer.write(bad)
     assert writer.write([1]) == 1
-    assert reader.read(timeout=5).value == [1]
+    assert reader.read(timeout=HANG).value == [1]
 
 
 def test_a_list_may_be_changed_after_writing(ports):
@@ -43,8 +43,8 @@ def test_a_list_may_be_changed_after_writing(ports):
         numbers = [number] * 100
         assert writer.write(numbers) == 1
         numbers[:] = [-1] * 100
-        assert reader.read(timeout=5).value == [number] * 100
-        writer.flush(timeout=5)
+        assert reader.read(timeout=HANG).value == [number] * 100
+        writer.flush(timeout=HANG)
 
 
 def test_an_array_may_be_changed_after_writing(ports):
@@ -54,8 +54,8 @@ def test_an_array_may_be_changed_after_writing(ports):
         image = np.full((200, 200), turn, np.uint8)
         assert writer.write(image) == 1
         image[:] = 255
-        assert int(reader.read(timeout=5).value.array.max()) == turn
-        writer.flush(timeout=5)
+        assert int(reader.read(timeout=HANG).value.array.max()) == turn
+        writer.flush(timeout=HANG)
 
 
 # ---------------------------------------------------------------------------------- policies
@@ -74,7 +74,7 @@ def test_reader_gets_the_newest(names):
         for number in range(20):
             writer.write([number], wait=True)
         assert reader.waiting == 1
-        assert reader.read(timeout=5).value == [19]
+        assert reader.read(timeout=HANG).value == [19]
         assert reader.poll() is None
         assert reader.inputs[0].stats.replaced == 19
         with pytest.raises(yarpy.Timeout):
@@ -89,7 +89,7 @@ def test_strict_reader_gets_everything(names):
         writer.connect("/reader")
         for number in range(200):
             writer.write([number])
-        assert [reader.read(timeout=5).value[0] for _ in range(200)] == list(range(200))
+        assert [reader.read(timeout=HANG).value[0] for _ in range(200)] == list(range(200))
         assert reader.inputs[0].stats.drops == 0
 
 
@@ -104,7 +104,7 @@ def test_writer_does_not_wait_for_a_slow_reader(names):
         assert lasted(started) < 1
         assert 1 <= taken < 100
         wait_until_sent(writer, 100)
-        assert reader.read(timeout=5).value == [0]
+        assert reader.read(timeout=HANG).value == [0]
 
 
 @pytest.mark.parametrize("carrier", ["text", "text_ack"])
@@ -132,8 +132,8 @@ def test_strict_writer_waits_and_loses_nothing(names):
         writer.connect("/reader")
         thread = threading.Thread(target=lambda: [writer.write([n]) for n in range(500)])
         thread.start()
-        assert [reader.read(timeout=5).value[0] for _ in range(500)] == list(range(500))
-        thread.join(5)
+        assert [reader.read(timeout=HANG).value[0] for _ in range(500)] == list(range(500))
+        thread.join(HANG)
         assert writer.outputs[0].stats.drops == 0
 
 
@@ -167,7 +167,7 @@ def test_callback_sees_every_message(names):
         writer.connect("/reader")
         for number in range(50):
             writer.write([number])
-        writer.flush(timeout=5)
+        writer.flush(timeout=HANG)
         assert [m.value[0] for m in heard] == list(range(50))
         with pytest.raises(yarpy.PortClosed):
             reader.read(timeout=0)
@@ -184,10 +184,10 @@ def test_iteration_ends_with_the_port(names):
         thread.start()
         for number in range(5):
             writer.write([number])
-        writer.flush(timeout=5)
+        writer.flush(timeout=HANG)
         wait_until(lambda: len(found) == 5)
         reader.close()
-        thread.join(5)
+        thread.join(HANG)
         assert found == [0, 1, 2, 3, 4]
 
 
@@ -197,8 +197,8 @@ def test_call_to_a_buffered_port_gets_an_empty_answer_or_the_readers(names):
         yarpy.BufferedPort("/reader", strict=True, names=names) as reader,
         yarpy.RpcClient("/reader", names=names) as client,
     ):
-        assert client.call("x", timeout=5) == []
-        message = reader.read(timeout=5)
+        assert client.call("x", timeout=HANG) == []
+        message = reader.read(timeout=HANG)
         assert message.value == ["x"]
         assert not message.wants_reply
 
@@ -216,20 +216,20 @@ def test_reading_policy_may_be_chosen_after_opening(names: yarpy.LocalNames) -> 
         for number in range(1, 4):
             out.write([number])
         wait_until(lambda: in_.waiting == 4)
-        assert [in_.read(timeout=5).value for _ in range(4)] == [[0], [1], [2], [3]]
+        assert [in_.read(timeout=HANG).value for _ in range(4)] == [[0], [1], [2], [3]]
         for number in range(4, 7):
             out.write([number])
         wait_until(lambda: in_.waiting == 3)
         in_.read_strictly(False)  # of what waits the newest stays
-        assert in_.read(timeout=5).value == [6]
+        assert in_.read(timeout=HANG).value == [6]
         assert in_.poll() is None
         in_.interrupt()
         in_.read_strictly()
         with pytest.raises(yarpy.PortClosed):
-            in_.read(timeout=5)
+            in_.read(timeout=HANG)
         in_.resume()
         out.write([7])
-        assert in_.read(timeout=5).value == [7]
+        assert in_.read(timeout=HANG).value == [7]
 
 
 def test_callback_gets_everything_anyway(names: yarpy.LocalNames) -> None:

@@ -7,7 +7,7 @@ import socket
 import time
 
 import pytest
-from support.wait import wait_until
+from support.wait import HANG, wait_until
 
 from yarpy import network
 from yarpy.nameserver.local import LocalNames
@@ -19,7 +19,7 @@ def test_who_over_what_and_how_it_is_doing(names: LocalNames) -> None:
     with Port("/out", names=names) as out, Port("/in", names=names) as in_:
         out.connect("/in", "tcp+peer_timeout.9")
         out.write([1], wait=False)
-        in_.read(timeout=5)
+        in_.read(timeout=HANG)
         (output,) = out.outputs
         (input_,) = in_.inputs
         for connection in (output, input_):
@@ -40,7 +40,7 @@ def test_rate_and_jitter_are_measured(names: LocalNames) -> None:
         out.connect("/in")
         for number in range(50):
             out.write([number])
-            in_.read(timeout=5)
+            in_.read(timeout=HANG)
         for connection in (*out.outputs, *in_.inputs):
             stats = connection.stats
             assert 0 < stats.rate <= 1 / stats.period
@@ -50,12 +50,12 @@ def test_rate_and_jitter_are_measured(names: LocalNames) -> None:
 def test_either_side_may_end_it(names: LocalNames) -> None:
     with Port("/out", names=names) as out, Port("/in", names=names) as in_:
         out.connect("/in")
-        assert in_.wait_for_inputs(timeout=5)
+        assert in_.wait_for_inputs(timeout=HANG)
         out.outputs[0].close()
         assert out.outputs == []
         wait_until(lambda: not in_.inputs)
         out.connect("/in")
-        assert in_.wait_for_inputs(timeout=5)
+        assert in_.wait_for_inputs(timeout=HANG)
         in_.inputs[0].close()
         wait_until(lambda: not in_.inputs)
         assert out.outputs == []  # its sender was told,
@@ -133,7 +133,7 @@ def test_reversed_connection_is_an_input_that_becomes_an_output(names: LocalName
         socket.create_connection(("127.0.0.1", out.contact.port)) as sock,
     ):
         sock.sendall(b"CONNECT /reader\r\nr\r\n")
-        assert out.wait_for_outputs(timeout=5)
+        assert out.wait_for_outputs(timeout=HANG)
         # The output is there a moment before it is told.
         wait_until(lambda: len(seen) == 2)
         assert [(e.incoming, e.created) for e in seen] == [(True, True), (False, True)]

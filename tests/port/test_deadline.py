@@ -8,7 +8,7 @@ from collections.abc import Iterator
 
 import pytest
 from support.lasted import lasted
-from support.wait import wait_until
+from support.wait import HANG, wait_until
 
 import yarpy
 from yarpy.network import qos
@@ -29,7 +29,7 @@ def ends(names: yarpy.LocalNames) -> Iterator[tuple[yarpy.Port, yarpy.BufferedPo
         yarpy.BufferedPort("/in", names=names, strict=True) as in_,
     ):
         out.connect("/in")
-        assert in_.wait_for_inputs(timeout=5)
+        assert in_.wait_for_inputs(timeout=HANG)
         yield out, in_
 
 
@@ -48,7 +48,7 @@ def test_late_messages_are_counted_and_told(ends: Ends, names: yarpy.LocalNames)
     assert qos.granted("/out", "/in", names)[1].deadline == 60
     for age in (0, 100, 0, 200):
         out.write([age], late(age))
-        assert in_.read(timeout=5).value == [age]
+        assert in_.read(timeout=HANG).value == [age]
     assert [event.silent for event in heard] == [False, False]
     assert (heard[1].source, heard[1].target, heard[1].missed) == ("/out", "/in", 2)
     assert 140 <= heard[1].lateness < 200
@@ -65,7 +65,7 @@ def test_late_messages_are_dropped_at_the_receiver(ends: Ends) -> None:
     in_.inputs[0].qos = Qos(deadline=60, late="drop")
     for age in (0, 100, 0):
         out.write([age], late(age))
-    assert [in_.read(timeout=5).value for _ in range(2)] == [[0], [0]]
+    assert [in_.read(timeout=HANG).value for _ in range(2)] == [[0], [0]]
     stats = in_.inputs[0].stats
     assert (stats.missed, stats.drops) == (1, 1)
 
@@ -77,7 +77,7 @@ def test_what_is_late_already_is_not_sent(ends: Ends, names: yarpy.LocalNames) -
     assert [out.write([age], late(age)) for age in (0, 100)] == [1, 0]
     out._hub.outputs.links[0].start_background()
     assert [out.write([age], late(age)) for age in (0, 100)] == [1, 0]
-    assert [in_.read(timeout=5).value for _ in range(2)] == [[0], [0]]
+    assert [in_.read(timeout=HANG).value for _ in range(2)] == [[0], [0]]
     assert out.outputs[0].stats.drops == 2
     found = flow("/out", "/in", names)
     assert found.sender is not None
@@ -103,7 +103,7 @@ def test_a_queue_does_not_send_what_has_become_late_in_it(
         out.connect("/in")
         if others:
             out.connect("/other")
-        assert in_.wait_for_inputs(timeout=5)
+        assert in_.wait_for_inputs(timeout=HANG)
         try:
             out.write([0])
             wait_until(lambda: came)
@@ -151,7 +151,7 @@ def test_a_callback_that_fails_costs_nothing(ends: Ends, caplog: pytest.LogCaptu
     in_.on_deadline(fail)
     in_.inputs[0].qos = Qos(deadline=60)
     out.write([1], late(100))
-    assert in_.read(timeout=5).value == [1]
+    assert in_.read(timeout=HANG).value == [1]
     assert "the deadline callback failed" in caplog.text
 
 
@@ -174,12 +174,12 @@ def test_monitors_still_see_what_comes(names: yarpy.LocalNames) -> None:
         yarpy.BufferedPort("/in", names=names, strict=True) as in_,
     ):
         out.connect("/in", "tcp+recv.throttleDown+period_ms.100000")
-        assert in_.wait_for_inputs(timeout=5)
+        assert in_.wait_for_inputs(timeout=HANG)
         in_.inputs[0].qos = Qos(deadline=60, late="drop")
         in_.attach("in", {"monitor": "throttleDown", "period_ms": 0})
         for age in (100, 0, 0):
             out.write([age], late(age))
-        assert in_.read(timeout=5).value == [0]
+        assert in_.read(timeout=HANG).value == [0]
         [link] = [one for one in in_._hub.inputs.links if one.route.source == "/out"]
         assert link.own_chain is not None
         wait_until(lambda: link.own_chain.dropped == [1])

@@ -2,6 +2,7 @@
 
 import pytest
 from support.guest import guest
+from support.wait import HANG
 
 import yarpy
 from yarpy.errors import AddressError
@@ -43,7 +44,7 @@ def test_without_a_master_they_are_ordinary_ports() -> None:
         assert (reader.name, server.name, client.name) == ("/t-@/n", "/sum-1@/n", "/sum+1@/m")
         writer.connect("/t-@/n")
         writer.write("hi")
-        assert reader.read(timeout=5).value == "hi"
+        assert reader.read(timeout=HANG).value == "hi"
         assert client.call(1) == [3]
 
 

@@ -16,7 +16,7 @@ import numpy as np
 import pytest
 from support.lasted import lasted
 from support.peer import program
-from support.wait import wait_until
+from support.wait import HANG, wait_until
 
 import yarpy
 from yarpy.carriers.base import Limits
@@ -570,7 +570,7 @@ def test_curl_with_a_large_body(echo: yarpy.RpcServer) -> None:
     done = subprocess.run(
         [program("curl"), "-sS", "--noproxy", "*", "-H", "Content-Type: text/plain",
          "-H", "Expect: 100-continue", "--data-binary", "@-", f"http://{echo.address}/form"],
-        input=body, capture_output=True, text=True, timeout=20,
+        input=body, capture_output=True, text=True, timeout=HANG,
     )  # fmt: skip
     assert done.stdout.startswith("ok echo ((1 1 1 ")
 

@@ -12,7 +12,7 @@ import pytest
 from support import held
 from support.moments import moments
 from support.port import free_port
-from support.wait import wait_until
+from support.wait import HANG, wait_until
 
 from yarpy import network
 from yarpy.contact import Contact
@@ -82,7 +82,7 @@ def test_closing_tells_senders_and_receivers(names: LocalNames) -> None:
     ):
         out.connect("/middle")
         middle.connect("/in")
-        assert in_.wait_for_inputs(timeout=5)
+        assert in_.wait_for_inputs(timeout=HANG)
         middle.close()
         middle.close()
         assert out.outputs == []
@@ -99,7 +99,7 @@ def test_closing_frees_the_number_and_its_threads(names: LocalNames) -> None:
         with Port("/in", names=names) as in_, Port("/out", names=names) as out:
             out.connect("/in")
             out.write([1])
-            in_.read(timeout=5)
+            in_.read(timeout=HANG)
             number = in_.contact.port
         with socket.socket() as sock:
             sock.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
@@ -121,7 +121,7 @@ def test_snapshot_tells_all(names: LocalNames) -> None:
     with Port("/in", names=names) as in_, Port("/out", names=names) as out:
         out.connect("/in")
         out.write([1])
-        in_.read(timeout=5)
+        in_.read(timeout=HANG)
         stats = in_.stats
         assert stats.name == "/in"
         assert stats.inputs[0].source == "/out"

@@ -29,7 +29,7 @@ def test_new_connection_of_the_same_sender_replaces_the_old(names: LocalNames) -
             assert [o.carrier for o in out.outputs] == [carrier]
             wait_until(lambda c=carrier: [i.carrier for i in in_.inputs] == [c])
             out.write([carrier])
-            assert in_.read(timeout=5).value == [carrier]
+            assert in_.read(timeout=HANG).value == [carrier]
 
 
 def _dial_at_once(port: Port, greeting: bytes, count: int) -> list[socket.socket]:
@@ -78,7 +78,7 @@ def test_of_connections_that_one_sender_makes_at_once_one_stays(
             for sock in socks:
                 with contextlib.suppress(OSError):
                     sock.sendall(b"D\r\n%d\r\n" % number)
-            assert in_.read(timeout=5).value == [number]
+            assert in_.read(timeout=HANG).value == [number]
             for sock in socks:
                 sock.close()
             wait_until(lambda: not in_.inputs)
@@ -183,7 +183,7 @@ def test_closing_waits_for_a_callback_with_what_a_replaced_connection_brought(
             for _ in range(2)
         )
         first.sendall(b"CONNECT /same\r\nD\r\n1\r\n")
-        assert busy.wait(5)
+        assert busy.wait(HANG)
         second.sendall(b"CONNECT /same\r\n")
         first.setblocking(False)
         wait_until(lambda: _is_over(first))
@@ -212,8 +212,8 @@ def test_sender_that_is_busy_does_not_hold_its_successor_up(names: LocalNames) -
         started = time.monotonic()
         second = socket.create_connection(("127.0.0.1", in_.contact.port))
         second.sendall(b"CONNECT /same\r\nD\r\n2\r\n")
-        assert in_.read(timeout=5).value == [1]
-        assert in_.read(timeout=5).value == [2]
+        assert in_.read(timeout=HANG).value == [1]
+        assert in_.read(timeout=HANG).value == [2]
         assert lasted(started) < 4
         for sock in (first, second):
             sock.close()

@@ -131,12 +131,12 @@ def test_nothing_is_lost_uncounted_between_threads(kind: type[Mailbox]) -> None:
     for thread in (*writers, *readers):
         thread.start()
     for thread in writers:
-        thread.join(20)
+        thread.join(HANG)
     wait_until(lambda: box.waiting == 0)
     time.sleep(0.01)
     box.interrupt()
     for thread in readers:
-        thread.join(5)
+        thread.join(HANG)
     drops = sum(link.counter.drops for link in links)
     replaced = sum(link.counter.replaced for link in links)
     assert len(found) + replaced + drops == 4 * count
@@ -168,7 +168,7 @@ def test_fifo_counts_what_messages_really_take(carrier: str, value: list[object]
     ):
         out.connect("/in", carrier)
         assert out.write(value, wait=carrier != "local")
-        in_.read(timeout=5)
+        in_.read(timeout=HANG)
         tracemalloc.start()
         try:
             before, _ = tracemalloc.get_traced_memory()
@@ -206,7 +206,7 @@ def test_fifo_that_is_full_makes_its_senders_wait() -> None:
     assert not done.wait(0.05)
     assert box.waiting < 50
     assert [taken(box) for _ in range(50)] == list(range(50))
-    assert done.wait(5)
+    assert done.wait(HANG)
     assert link.counter.drops == 0
 
 
@@ -217,7 +217,7 @@ def test_fifo_lets_waiting_senders_go_when_it_stops() -> None:
     wait_until(lambda: box.waiting >= 1)
     time.sleep(0.02)
     box.interrupt()
-    thread.join(5)
+    thread.join(HANG)
     assert not thread.is_alive()
     assert link.counter.drops == 10
 
@@ -255,7 +255,7 @@ def test_question_holds_its_connection_until_it_is_answered() -> None:
     time.sleep(0.02)
     assert thread.is_alive()
     found.reply("yes")
-    thread.join(5)
+    thread.join(HANG)
     assert answers == ["yes"]
 
 
@@ -268,7 +268,7 @@ def test_question_that_is_left_open_is_closed(how: str) -> None:
     thread.start()
     assert box.take(5) is not None
     getattr(box, how)()
-    thread.join(5)
+    thread.join(HANG)
     assert not thread.is_alive()
 
 
@@ -286,7 +286,7 @@ def test_connection_goes_on_when_its_asker_has_gone() -> None:
     assert found is not None
     with pytest.raises(ConnectionError):
         found.reply("too late")
-    thread.join(5)
+    thread.join(HANG)
     assert not thread.is_alive()
 
 
@@ -298,7 +298,7 @@ def test_callback_runs_in_the_threads_of_connections(caplog: pytest.LogCaptureFi
     box = Callback(lambda m: heard.append((m.value[0], threading.current_thread().name)))
     thread = threading.Thread(target=put, args=(box, Link(), 5), name="of the connection")
     thread.start()
-    thread.join(5)
+    thread.join(HANG)
     assert heard == [(5, "of the connection")]
     with pytest.raises(PortClosed, match="callback"):
         box.take(0)
@@ -345,7 +345,7 @@ def test_locked_callback_is_called_one_at_a_time() -> None:
     for thread in threads:
         thread.start()
     for thread in threads:
-        thread.join(5)
+        thread.join(HANG)
     assert max(most) == 1
     assert len(most) == 5
 
@@ -370,7 +370,7 @@ def test_interrupt_wakes_every_reader(kind: type[Mailbox]) -> None:
     time.sleep(0.02)
     box.interrupt()
     for thread in threads:
-        thread.join(5)
+        thread.join(HANG)
     assert len(ended) == 3
     with pytest.raises(PortClosed):
         box.take(0)
@@ -404,7 +404,7 @@ def test_senders_of_a_plain_port_are_let_go() -> None:
     wait_until(lambda: box.waiting == 3)
     box.interrupt()
     for thread in threads:
-        thread.join(5)
+        thread.join(HANG)
         assert not thread.is_alive()
     put(box, link, 4)  # returns at once
     assert link.counter.drops == 4
@@ -427,7 +427,7 @@ def test_no_message_slips_in_while_stopping(kind: type[Mailbox]) -> None:
         thread.start()
         ready.wait()
         box.interrupt()
-        thread.join(5)
+        thread.join(HANG)
         assert not thread.is_alive()
         assert link.counter.drops == 1
         assert box.waiting == 0

@@ -32,7 +32,7 @@ def test_written_is_read(names: LocalNames) -> None:
         assert out.write([0]) == 0  # nobody is connected
         out.connect("/in")
         assert out.write([1, "two", [3.5]], Stamp(7, 1.25)) == 1
-        message = in_.read(timeout=5)
+        message = in_.read(timeout=HANG)
         assert message.value == [1, "two", [3.5]]
         assert message.stamp == Stamp(7, 1.25)
         assert message.source == "/out"
@@ -50,8 +50,8 @@ def test_sender_waits_until_its_message_was_read(names: LocalNames) -> None:
         thread.start()
         time.sleep(0.05)
         assert done == []
-        assert in_.read(timeout=5).value == [1]
-        thread.join(5)
+        assert in_.read(timeout=HANG).value == [1]
+        thread.join(HANG)
         assert done == [1]
 
 
@@ -61,8 +61,8 @@ def test_every_message_comes_once_and_in_order(names: LocalNames) -> None:
         count = 2000
         writer = threading.Thread(target=lambda: [out.write([n]) for n in range(count)])
         writer.start()
-        assert [in_.read(timeout=5).value[0] for _ in range(count)] == list(range(count))
-        writer.join(5)
+        assert [in_.read(timeout=HANG).value[0] for _ in range(count)] == list(range(count))
+        writer.join(HANG)
         assert in_.poll() is None
         assert out.outputs[0].stats.messages == count
         assert in_.inputs[0].stats.messages == count
@@ -78,8 +78,8 @@ def test_busy_writer_of_the_same_process_does_not_slow_its_reader_down(names: Lo
         started = time.monotonic()
         writer.start()
         for _ in range(count):
-            in_.read(timeout=5)
-        writer.join(5)
+            in_.read(timeout=HANG)
+        writer.join(HANG)
         assert lasted(started) < 3  # 0.05 s on an idle machine
 
 
@@ -93,7 +93,7 @@ def test_several_writers_and_readers(names: LocalNames) -> None:
                 out.connect("/in")
                 for number in range(count):
                     out.write([number])
-                out.flush(timeout=10)
+                out.flush(timeout=HANG)
 
         def read() -> None:
             for message in in_:
@@ -105,12 +105,12 @@ def test_several_writers_and_readers(names: LocalNames) -> None:
         for thread in (*readers, *writers):
             thread.start()
         for thread in writers:
-            thread.join(20)
+            thread.join(HANG)
             assert not thread.is_alive()
         wait_until(lambda: sum(map(len, found.values())) == 4 * count)
         in_.interrupt()
         for thread in readers:
-            thread.join(5)
+            thread.join(HANG)
         assert {name: sorted(numbers) for name, numbers in found.items()} == {
             f"/out{n}": list(range(count)) for n in range(4)
         }
@@ -136,7 +136,7 @@ def test_iteration_ends_with_the_port(names: LocalNames) -> None:
         for number in range(3):
             out.write([number], wait=True)
         in_.close()
-        thread.join(5)
+        thread.join(HANG)
         assert not thread.is_alive()
     assert found == [0, 1, 2]
     assert list(in_) == []
@@ -160,7 +160,7 @@ def test_interrupt_wakes_a_reader_and_resume_goes_on(names: LocalNames) -> None:
         thread.start()
         time.sleep(0.05)
         in_.interrupt()
-        thread.join(5)
+        thread.join(HANG)
         assert len(ended) == 1
         with pytest.raises(PortClosed):
             in_.read(timeout=1)
@@ -168,7 +168,7 @@ def test_interrupt_wakes_a_reader_and_resume_goes_on(names: LocalNames) -> None:
         assert in_.inputs[0].stats.drops == 1
         in_.resume()
         out.write([2])
-        assert in_.read(timeout=5).value == [2]
+        assert in_.read(timeout=HANG).value == [2]
         assert len(in_.inputs) == 1
 
 
@@ -180,7 +180,7 @@ def test_interrupted_port_does_not_write(names: LocalNames) -> None:
             out.write([1])
         out.resume()
         out.write([2])
-        assert in_.read(timeout=5).value == [2]
+        assert in_.read(timeout=HANG).value == [2]
 
 
 def test_close_while_reading_and_writing(names: LocalNames) -> None:
@@ -213,7 +213,7 @@ def test_close_while_reading_and_writing(names: LocalNames) -> None:
     in_.close()
     out.close()
     for thread in threads:
-        thread.join(5)
+        thread.join(HANG)
         assert not thread.is_alive()
     assert problems == []
     with pytest.raises(PortClosed, match="closed"):
@@ -234,22 +234,22 @@ def test_question_is_answered_by_the_reader(names: LocalNames) -> None:
 
         threading.Thread(target=serve, daemon=True).start()
         for number in range(20):
-            assert client.call("x", number, timeout=5) == ["got", "x", number]
+            assert client.call("x", number, timeout=HANG) == ["got", "x", number]
 
 
 def test_question_that_is_not_answered_ends_with_the_next_read(names: LocalNames) -> None:
     """The asker gets an empty answer instead of waiting for ever."""
     with Port("/in", names=names) as in_, RpcClient("/in", names=names) as client:
         answers: list[object] = []
-        thread = threading.Thread(target=lambda: answers.append(client.call("x", timeout=5)))
+        thread = threading.Thread(target=lambda: answers.append(client.call("x", timeout=HANG)))
         thread.start()
-        message = in_.read(timeout=5)
+        message = in_.read(timeout=HANG)
         assert message.wants_reply
         time.sleep(0.05)
         assert answers == []
         with pytest.raises(Timeout):
             in_.read(timeout=0.01)
-        thread.join(5)
+        thread.join(HANG)
         assert answers == [[]]
         with pytest.raises(LocalProtocolError):
             message.reply(["too late"])
@@ -258,11 +258,11 @@ def test_question_that_is_not_answered_ends_with_the_next_read(names: LocalNames
 def test_answer_from_another_thread_and_only_once(names: LocalNames) -> None:
     with Port("/in", names=names) as in_, RpcClient("/in", names=names) as client:
         answers: list[object] = []
-        thread = threading.Thread(target=lambda: answers.append(client.call("x", timeout=5)))
+        thread = threading.Thread(target=lambda: answers.append(client.call("x", timeout=HANG)))
         thread.start()
-        message = in_.read(timeout=5)
+        message = in_.read(timeout=HANG)
         threading.Timer(0.05, message.reply, (["late"],)).start()
-        thread.join(5)
+        thread.join(HANG)
         assert answers == [["late"]]
         with pytest.raises(LocalProtocolError, match="answered already"):
             message.reply(["again"])
@@ -272,7 +272,7 @@ def test_asker_that_has_gone_is_an_error_of_reply(names: LocalNames) -> None:
     with Port("/in", names=names) as in_:
         with socket.create_connection(("127.0.0.1", in_.contact.port)) as sock:
             sock.sendall(b"CONNACK asker\r\nd\r\n[1]\r\n")
-            message = in_.read(timeout=5)
+            message = in_.read(timeout=HANG)
             # reset, so that sending fails
             sock.setsockopt(socket.SOL_SOCKET, socket.SO_LINGER, struct.pack("ii", 1, 0))
         with pytest.raises(LinkClosed):
@@ -339,7 +339,7 @@ def test_callback_may_answer_and_write(names: LocalNames) -> None:
         out.connect("/relay")
         for number in range(5):
             out.write([number])
-            assert back.read(timeout=5).value == [number]
+            assert back.read(timeout=HANG).value == [number]
 
 
 def test_callback_may_close_its_own_port(names: LocalNames) -> None:
@@ -353,7 +353,7 @@ def test_callback_may_close_its_own_port(names: LocalNames) -> None:
     with Port("/out", names=names) as out:
         out.connect("/in")
         out.write([1])
-        assert closed.wait(10)
+        assert closed.wait(HANG)
         assert in_.closed
         wait_until(lambda: not in_._hub.inputs.links)
     in_.close()
@@ -376,12 +376,12 @@ def test_peer_that_vanishes_in_the_middle_of_a_message(names: LocalNames) -> Non
     with Port("/in", names=names) as in_, Port("/out", names=names) as out:
         with stranger(in_) as sock:
             sock.sendall(GREETING + data[:50_000])
-            assert in_.wait_for_inputs(timeout=5)
+            assert in_.wait_for_inputs(timeout=HANG)
         wait_until(lambda: not in_.inputs)
         assert in_.poll() is None
         out.connect("/in")
         out.write([1])
-        assert in_.read(timeout=5).value == [1]
+        assert in_.read(timeout=HANG).value == [1]
 
 
 @pytest.mark.parametrize(
@@ -404,7 +404,7 @@ def test_garbage_after_a_good_greeting(
             assert sock.recv(8) == b""
         wait_until(lambda: len(in_.inputs) == 1)
         out.write([1])
-        assert in_.read(timeout=5).value == [1]
+        assert in_.read(timeout=HANG).value == [1]
     lines = [r for r in caplog.records if r.levelname in ("WARNING", "ERROR")]
     assert len(lines) == 1
     assert "/stranger" in lines[0].getMessage()
@@ -414,7 +414,7 @@ def test_message_beyond_the_limit(names: LocalNames, caplog: pytest.LogCaptureFi
     with Port("/in", names=names, limit=10_000) as in_, Port("/out", names=names) as out:
         out.connect("/in")
         out.write([bytes(1000)])
-        assert len(in_.read(timeout=5).value[0]) == 1000
+        assert len(in_.read(timeout=HANG).value[0]) == 1000
         out.write([bytes(100_000)])
         wait_until(lambda: "limit is 10000" in caplog.text)
         with pytest.raises(Timeout):
@@ -428,10 +428,10 @@ def test_undecodable_message_is_the_readers_error_alone(names: LocalNames) -> No
     bad += b"\0\0\0\0~D\0\1" + struct.pack("<3i", 999, 1, 5)
     with Port("/in", names=names) as in_, stranger(in_) as sock:
         sock.sendall(GREETING + bad + b"".join(framing.encode(Packet([2]))))  # type: ignore[arg-type]
-        message = in_.read(timeout=5)
+        message = in_.read(timeout=HANG)
         with pytest.raises(DecodeError):
             _ = message.value
-        assert in_.read(timeout=5).value == [2]
+        assert in_.read(timeout=HANG).value == [2]
 
 
 def test_thousand_silent_connections_and_one_that_speaks(names: LocalNames) -> None:
@@ -450,7 +450,7 @@ def test_thousand_silent_connections_and_one_that_speaks(names: LocalNames) -> N
             started = time.monotonic()
             out.connect("/in")
             out.write([1])
-            assert in_.read(timeout=5).value == [1]
+            assert in_.read(timeout=HANG).value == [1]
             assert network.exists("/in", names=names)
             assert lasted(started) < 2
     finally:
@@ -499,7 +499,7 @@ def test_large_messages_reuse_their_memory(names: LocalNames) -> None:
         def exchange(count: int) -> None:
             for _ in range(count):
                 out.write(picture)
-                message = in_.read(timeout=5)
+                message = in_.read(timeout=HANG)
                 assert len(message.payload) > 1 << 20
 
         exchange(3)
@@ -522,7 +522,7 @@ def test_port_without_a_name_or_a_name_server(monkeypatch: pytest.MonkeyPatch) -
         assert in_.name.startswith("/")
         out.connect(f"/127.0.0.1:{in_.contact.port}")
         out.write([1])
-        assert in_.read(timeout=5).value == [1]
+        assert in_.read(timeout=HANG).value == [1]
         assert out.disconnect(out.outputs[0].target)
 
 
@@ -530,7 +530,7 @@ def test_bottle_is_bottle(names: LocalNames) -> None:
     with Port("/out", names=names) as out, Port("/in", names=names) as in_:
         out.connect("/in")
         out.write(Bottle.from_text("1 (a b) [set]"))
-        assert in_.read(timeout=5).as_(Bottle).to_text() == "1 (a b) [set]"
+        assert in_.read(timeout=HANG).as_(Bottle).to_text() == "1 (a b) [set]"
 
 
 def test_asking_every_connected_port(names: LocalNames) -> None:
@@ -550,8 +550,8 @@ def test_asking_every_connected_port(names: LocalNames) -> None:
         asker.connect("/two")
         assert [answer.value[0] for answer in asker.ask(["hi"])] == ["one", "two"]
         asker.connect("/silent")
-        assert len(asker.ask(["hi"], timeout=5)) >= 2  # who only listens does not stop it
-        assert silent.read(timeout=5).value == ["hi"]
+        assert len(asker.ask(["hi"], timeout=HANG)) >= 2  # who only listens does not stop it
+        assert silent.read(timeout=HANG).value == ["hi"]
         asker.close()
         with pytest.raises(PortClosed):
             asker.ask(["hi"])
@@ -563,7 +563,7 @@ def test_question_that_is_not_answered_in_time_ends_its_connection(names: LocalN
     done = threading.Event()
     with (
         Port("/asker", names=names) as asker,
-        RpcServer("/slow", lambda message: done.wait(20), names=names),
+        RpcServer("/slow", lambda message: done.wait(HANG), names=names),
     ):
         asker.connect("/slow")
         assert asker.ask(["hi"], timeout=0.05) == []

@@ -12,7 +12,7 @@ from typing import Any
 import numpy as np
 import pytest
 from support.process import Process
-from support.wait import wait_until
+from support.wait import HANG, wait_until
 
 import yarpy
 from yarpy.port import preparing
@@ -68,7 +68,7 @@ def test_received_pictures_stay_what_they_are(
         kept = []
         for number in range(300):
             out.write(np.full((60, 100, 3), number % 256, "u1"))
-            message = in_.read(timeout=5)
+            message = in_.read(timeout=HANG)
             assert message is not None
             kept.append(message.value.array)
             del message

@@ -38,7 +38,7 @@ def test_ping_pong_then_pause_then_ping_pong(kind: str, names: LocalNames) -> No
         for pause in (0, 0.08, 0, 0.012, 0):
             for _ in range(50):
                 out.write([number])
-                assert in_.read(timeout=5).value == [number]
+                assert in_.read(timeout=HANG).value == [number]
                 number += 1
             time.sleep(pause)
         assert in_.inputs[0].stats.messages == number
@@ -53,14 +53,14 @@ def test_silence_is_no_failure(kind: str, names: LocalNames) -> None:
         out.connect("/in")
         for number in range(20):
             out.write([number])
-            in_.read(timeout=5)
+            in_.read(timeout=HANG)
         for _ in range(3):
             with pytest.raises(Timeout):
                 in_.read(timeout=0.01)
         time.sleep(0.15)
         assert len(in_.inputs) == 1
         out.write(["after"])
-        assert in_.read(timeout=5).value == ["after"]
+        assert in_.read(timeout=HANG).value == ["after"]
 
 
 @pytest.mark.parametrize("kind", KINDS)
@@ -69,7 +69,7 @@ def test_time_limit_is_kept_with_the_lease(kind: str, names: LocalNames) -> None
         out.connect("/in")
         for number in range(20):
             out.write([number])
-            in_.read(timeout=5)
+            in_.read(timeout=HANG)
         for limit in (0, 0.005, 0.05, 0.15):
             started = time.monotonic()
             with pytest.raises(Timeout):
@@ -83,7 +83,7 @@ def test_interrupt_wakes_a_reader_with_the_lease(kind: str, names: LocalNames) -
         out.connect("/in")
         for number in range(20):
             out.write([number])
-            in_.read(timeout=5)
+            in_.read(timeout=HANG)
         threading.Timer(0.05, in_.interrupt).start()
         started = time.monotonic()
         with pytest.raises(PortClosed):
@@ -91,7 +91,7 @@ def test_interrupt_wakes_a_reader_with_the_lease(kind: str, names: LocalNames) -
         assert lasted(started) < 2
         in_.resume()
         out.write(["after"])
-        assert in_.read(timeout=5).value == ["after"]
+        assert in_.read(timeout=HANG).value == ["after"]
 
 
 @pytest.mark.parametrize("kind", KINDS)
@@ -104,18 +104,18 @@ def test_second_connection_while_a_reader_has_the_lease(kind: str, names: LocalN
         out.connect("/in")
         for number in range(20):
             out.write([number])
-            in_.read(timeout=5)
+            in_.read(timeout=HANG)
         found: list[Message] = []
-        reader = threading.Thread(target=lambda: found.append(in_.read(timeout=5)))
+        reader = threading.Thread(target=lambda: found.append(in_.read(timeout=HANG)))
         reader.start()
         time.sleep(0.02)
         other.connect("/in")
         other.write(["hello"])
-        reader.join(5)
+        reader.join(HANG)
         assert found[0].value == ["hello"]
         assert found[0].source == "/other"
         out.write(["again"])
-        assert in_.read(timeout=5).value == ["again"]
+        assert in_.read(timeout=HANG).value == ["again"]
 
 
 @pytest.mark.parametrize("kind", KINDS)
@@ -124,14 +124,14 @@ def test_port_can_be_asked_while_a_reader_has_the_lease(kind: str, names: LocalN
         out.connect("/in")
         for number in range(20):
             out.write([number])
-            in_.read(timeout=5)
+            in_.read(timeout=HANG)
         found: list[Message] = []
-        reader = threading.Thread(target=lambda: found.append(in_.read(timeout=5)))
+        reader = threading.Thread(target=lambda: found.append(in_.read(timeout=HANG)))
         reader.start()
         assert network.is_connected("/out", "/in", names=names)
         assert network.exists("/in", names=names)
         out.write(["after"])
-        reader.join(5)
+        reader.join(HANG)
         assert found[0].value == ["after"]
 
 
@@ -146,7 +146,7 @@ def test_questions_with_the_lease(kind: str, names: LocalNames) -> None:
                 message.reply([number])
 
         threading.Thread(target=serve, daemon=True).start()
-        answers = [client.call("x", timeout=5) for _ in range(40)]
+        answers = [client.call("x", timeout=HANG) for _ in range(40)]
         assert answers == [[] if n % 10 == 9 else [n] for n in range(40)]
 
 
@@ -157,7 +157,7 @@ def test_sender_disconnects_while_a_reader_has_the_lease(kind: str, names: Local
             out.connect("/in")
             for number in range(20):
                 out.write([number])
-                assert in_.read(timeout=5).value == [number]
+                assert in_.read(timeout=HANG).value == [number]
             assert out.disconnect("/in")
             with pytest.raises(Timeout):
                 in_.read(timeout=0.02)
@@ -169,11 +169,11 @@ def test_latest_skips_while_its_reader_is_away(names: LocalNames) -> None:
         out.connect("/in")
         for number in range(30):
             out.write([number])
-            in_.read(timeout=5)
+            in_.read(timeout=HANG)
         time.sleep(0.05)
         for number in range(10):
             out.write([number], wait=True)
-        assert in_.read(timeout=5).value == [9]
+        assert in_.read(timeout=HANG).value == [9]
         assert in_.inputs[0].stats.replaced == 9
 
 
@@ -187,7 +187,7 @@ def test_latest_is_the_newest_for_a_reader_that_works_between_messages(names: Lo
                 number += 1
                 out.write([number])
             time.sleep(0.002)
-            newest += in_.read(timeout=5).value == [number]
+            newest += in_.read(timeout=HANG).value == [number]
         assert newest >= 40
 
 
@@ -197,7 +197,7 @@ def test_polling_while_the_lease_is_out(names: LocalNames) -> None:
         out.connect("/in")
         for number in range(30):
             out.write([number])
-            in_.read(timeout=5)
+            in_.read(timeout=HANG)
         for number in range(5):
             out.write([number])
             found: list[Message] = []
@@ -211,7 +211,7 @@ def test_strict_port_counts_what_waits(names: LocalNames) -> None:
         for number in range(10):
             out.write([number], wait=True)
         assert in_.waiting == 10
-        in_.read(timeout=5)
+        in_.read(timeout=HANG)
         assert in_.waiting == 9
 
 
@@ -231,7 +231,7 @@ def test_several_threads_read_and_answer_side_by_side(names: LocalNames) -> None
 
         def ask(number: int) -> None:
             with RpcClient("/in", names=names, name=f"/c{number}") as client:
-                answers.extend(client.call([n], timeout=20)[0] - n for n in range(20))
+                answers.extend(client.call([n], timeout=HANG)[0] - n for n in range(20))
 
         workers = [threading.Thread(target=work) for _ in range(3)]
         clients = [threading.Thread(target=ask, args=(number,)) for number in range(3)]
@@ -241,7 +241,7 @@ def test_several_threads_read_and_answer_side_by_side(names: LocalNames) -> None
             thread.join(60)
         assert answers == [1] * 60
     for thread in workers:
-        thread.join(20)
+        thread.join(HANG)
 
 
 def _hold(in_: Port, held: threading.Event, free: threading.Event) -> None:
@@ -249,7 +249,7 @@ def _hold(in_: Port, held: threading.Event, free: threading.Event) -> None:
     for message in in_:
         if message.value[0] == "hold":
             held.set()
-            free.wait(20)
+            free.wait(HANG)
         else:
             message.reply(["yes"])
 
@@ -261,15 +261,15 @@ def test_question_left_open_is_closed_though_another_connection_came(names: Loca
         reader.start()
         wait_until(lambda: client.call("x") and in_.inputs[0]._link.turn.leased, what="the lease")
         answers: list[object] = []
-        asker = threading.Thread(target=lambda: answers.append(client.call("hold", timeout=20)))
+        asker = threading.Thread(target=lambda: answers.append(client.call("hold", timeout=HANG)))
         asker.start()
-        assert held.wait(5)
+        assert held.wait(HANG)
         with RpcClient("/in", names=names) as other:
             free.set()
-            assert other.call("x", timeout=20) == ["yes"]
-        asker.join(20)
+            assert other.call("x", timeout=HANG) == ["yes"]
+        asker.join(HANG)
         assert answers == [[]]
-    reader.join(20)
+    reader.join(HANG)
 
 
 def test_question_of_an_asker_who_left_is_no_error_of_the_next_read(names: LocalNames) -> None:
@@ -285,8 +285,8 @@ def test_question_of_an_asker_who_left_is_no_error_of_the_next_read(names: Local
                 client.call("hold", timeout=0.05)
         free.set()
         with RpcClient("/in", names=names) as other:
-            assert other.call("x", timeout=20) == ["yes"]
-    reader.join(20)
+            assert other.call("x", timeout=HANG) == ["yes"]
+    reader.join(HANG)
 
 
 class Slow:
@@ -421,12 +421,12 @@ def test_question_of_a_thread_that_ended_is_closed_by_the_next_read(names: Local
         reader = threading.Thread(target=in_.read)
         reader.start()
         answers: list[object] = []
-        asker = threading.Thread(target=lambda: answers.append(client.call("x", timeout=20)))
+        asker = threading.Thread(target=lambda: answers.append(client.call("x", timeout=HANG)))
         asker.start()
-        reader.join(20)
+        reader.join(HANG)
         with pytest.raises(Timeout):
             in_.read(timeout=0)
-        asker.join(20)
+        asker.join(HANG)
         assert answers == [[]]
 
 
@@ -478,7 +478,7 @@ def test_nobody_wakes_up_on_a_silent_port(kind: str, names: LocalNames) -> None:
             assert heard[-1].value == ["after"]
         finally:
             in_.interrupt()
-            reader.join(5)
+            reader.join(HANG)
 
 
 def test_a_time_limit_is_a_number(names: LocalNames) -> None:

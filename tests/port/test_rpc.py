@@ -61,7 +61,7 @@ def test_arguments_are_the_message(
         RpcServer("/server", lambda m: ["heard", m.as_(Bottle)], names=names),
         RpcClient("/server", names=names) as client,
     ):
-        assert client.call(*arguments, timeout=5) == ["heard", heard]
+        assert client.call(*arguments, timeout=HANG) == ["heard", heard]
 
 
 def test_who_wants_to_read_is_told_that_there_is_nothing(
@@ -100,7 +100,7 @@ def test_calls_over_carriers(carrier: str, names: LocalNames) -> None:
         RpcClient("/server", carrier=carrier, names=names) as client,
     ):
         for number in range(50):
-            assert client.call("n", number, timeout=5) == ["n", number]
+            assert client.call("n", number, timeout=HANG) == ["n", number]
         assert client.outputs[0].carrier == carrier
         assert client.outputs[0].stats.messages == 50
         assert client.outputs[0].stats.latency > 0
@@ -112,16 +112,16 @@ def test_answer_may_be_anything_or_nothing(names: LocalNames) -> None:
         RpcServer("/server", lambda message: next(answers), names=names),
         RpcClient("/server", names=names) as client,
     ):
-        assert client.call("x", timeout=5) == []
-        assert client.call("x", timeout=5) == []
-        assert client.call("x", timeout=5) == "text"
-        assert client.call("x", timeout=5) == 7
-        assert client.call("x", timeout=5) == [1, [2]]
-        assert client.call("x", timeout=5) == [["a", 1]]
+        assert client.call("x", timeout=HANG) == []
+        assert client.call("x", timeout=HANG) == []
+        assert client.call("x", timeout=HANG) == "text"
+        assert client.call("x", timeout=HANG) == 7
+        assert client.call("x", timeout=HANG) == [1, [2]]
+        assert client.call("x", timeout=HANG) == [["a", 1]]
         reply = client.ask(["x"], 5)
         assert reply is not None
         assert reply.as_(Stamp) == Stamp(1, 2.5)
-        assert list(client.call("x", timeout=5)) == [1.5]
+        assert list(client.call("x", timeout=HANG)) == [1.5]
 
 
 @pytest.mark.parametrize(("returned", "told"), [(["ignored"], True), (None, False)])
@@ -136,7 +136,7 @@ def test_handler_may_answer_itself(
         RpcServer("/server", handle, names=names),
         RpcClient("/server", names=names) as client,
     ):
-        assert [client.call("x", timeout=5) for _ in range(3)] == [["mine"]] * 3
+        assert [client.call("x", timeout=HANG) for _ in range(3)] == [["mine"]] * 3
     assert ("does not wait for a reply" in caplog.text) is told
 
 
@@ -147,10 +147,10 @@ def test_question_that_nobody_answers(carrier: str, names: LocalNames) -> None:
         RpcServer("/server", lambda message: None, names=names) as server,
         RpcClient("/server", carrier=carrier, names=names) as client,
     ):
-        assert client.call("x", timeout=20) == []
+        assert client.call("x", timeout=HANG) == []
         server._hub.monitoring.attach("in", Property(monitor="throttleDown"))
-        assert client.call("x", timeout=20) == []
-        assert client.call("x", timeout=20) == []
+        assert client.call("x", timeout=HANG) == []
+        assert client.call("x", timeout=HANG) == []
 
 
 def test_failing_handler_says_why_and_goes_on(
@@ -164,14 +164,14 @@ def test_failing_handler_says_why_and_goes_on(
         RpcClient("/server", names=names) as client,
     ):
         with pytest.raises(RemoteError, match="division by zero") as failed:
-            client.call(0, timeout=5)
+            client.call(0, timeout=HANG)
         assert failed.value.type == "ZeroDivisionError"
-        answer = client.ask([0], timeout=5)  # what a client of C++ sees
+        answer = client.ask([0], timeout=HANG)  # what a client of C++ sees
         assert answer is not None
         fail, text, mark = answer.value
         assert (fail, text) == (Vocab("fail"), "ZeroDivisionError: division by zero")
         assert mark == ["raised", "ZeroDivisionError"]
-        assert client.call(5, timeout=5) == [2.0]
+        assert client.call(5, timeout=HANG) == [2.0]
     assert "Traceback" in caplog.text
 
 
@@ -181,9 +181,9 @@ def test_message_that_cannot_be_decoded_is_refused(names: LocalNames) -> None:
         RpcClient("/server", names=names) as client,
     ):
         with pytest.raises(RemoteError, match="no stamp") as failed:
-            client.call("no stamp", timeout=5)
+            client.call("no stamp", timeout=HANG)
         assert failed.value.type == "DecodeError"
-        assert client.call(Stamp(5, 1.0), timeout=5) == [5]
+        assert client.call(Stamp(5, 1.0), timeout=HANG) == [5]
 
 
 class Missing:
@@ -212,19 +212,19 @@ def test_answer_that_cannot_be_sent_is_an_answer_too(
     ):
         for _ in range(2):
             with pytest.raises(RemoteError, match=why):
-                client.call("x", timeout=5)
+                client.call("x", timeout=HANG)
 
 
 def test_reader_that_answers_with_something_odd_may_answer_again(names: LocalNames) -> None:
     with Port("/server", names=names) as server, RpcClient("/server", names=names) as client:
         answers: list[object] = []
-        thread = threading.Thread(target=lambda: answers.append(client.call("x", timeout=5)))
+        thread = threading.Thread(target=lambda: answers.append(client.call("x", timeout=HANG)))
         thread.start()
-        message = server.read(timeout=5)
+        message = server.read(timeout=HANG)
         with pytest.raises(TypeError, match="cannot be"):
             message.reply([object()])
         message.reply(["better"])
-        thread.join(5)
+        thread.join(HANG)
         assert answers == [["better"]]
 
 
@@ -258,7 +258,7 @@ def test_slow_server_is_a_timeout_and_its_late_answer_is_lost(names: LocalNames)
         with pytest.raises(Timeout, match=r'"/server" did not reply within 0\.0\d s'):
             client.call("slow", timeout=0.05)
         assert lasted(started) < 1
-        assert client.call("quick", timeout=5) == ["quick"]
+        assert client.call("quick", timeout=HANG) == ["quick"]
 
 
 def test_a_stuck_handler_keeps_nobody_waiting(
@@ -297,7 +297,7 @@ def test_clients_are_served_side_by_side(names: LocalNames) -> None:
     meeting = threading.Barrier(3)
 
     def handle(message: Message) -> object:
-        meeting.wait(5)
+        meeting.wait(HANG)
         return ["met"]
 
     with RpcServer("/server", handle, names=names):
@@ -305,13 +305,13 @@ def test_clients_are_served_side_by_side(names: LocalNames) -> None:
 
         def ask() -> None:
             with RpcClient("/server", names=names) as client:
-                answers.append(client.call("x", timeout=5))
+                answers.append(client.call("x", timeout=HANG))
 
         threads = [threading.Thread(target=ask) for _ in range(3)]
         for thread in threads:
             thread.start()
         for thread in threads:
-            thread.join(10)
+            thread.join(HANG)
         assert answers == [["met"]] * 3
 
 
@@ -332,13 +332,13 @@ def test_locked_server_takes_one_at_a_time(names: LocalNames) -> None:
         def ask() -> None:
             with RpcClient("/server", names=names) as client:
                 for _ in range(3):
-                    client.call("x", timeout=5)
+                    client.call("x", timeout=HANG)
 
         threads = [threading.Thread(target=ask) for _ in range(3)]
         for thread in threads:
             thread.start()
         for thread in threads:
-            thread.join(10)
+            thread.join(HANG)
         assert most == 1
 
 
@@ -351,14 +351,14 @@ def test_one_client_may_be_used_by_several_threads(names: LocalNames) -> None:
 
         def ask(who: int) -> None:
             for number in range(100):
-                if client.call(who, number, timeout=5) != [who, number]:
+                if client.call(who, number, timeout=HANG) != [who, number]:
                     wrong.append((who, number))
 
         threads = [threading.Thread(target=ask, args=(who,)) for who in range(4)]
         for thread in threads:
             thread.start()
         for thread in threads:
-            thread.join(10)
+            thread.join(HANG)
         assert wrong == []
 
 
@@ -378,12 +378,12 @@ def test_no_server(names: LocalNames) -> None:
 def test_server_that_is_restarted_is_found_by_the_next_call(names: LocalNames) -> None:
     with RpcServer("/server", echo, names=names):
         client = RpcClient("/server", names=names)
-        assert client.call(1, timeout=5) == [1]
+        assert client.call(1, timeout=HANG) == [1]
     with client:
         with pytest.raises((UnknownName, LinkClosed)):
-            client.call(2, timeout=5)
+            client.call(2, timeout=HANG)
         with RpcServer("/server", echo, names=names):
-            assert client.call(3, timeout=5) == [3]
+            assert client.call(3, timeout=HANG) == [3]
 
 
 def test_server_that_goes_away_during_the_call(names: LocalNames) -> None:
@@ -405,7 +405,7 @@ def test_server_that_goes_away_during_the_call(names: LocalNames) -> None:
         threading.Thread(target=serve, daemon=True).start()
         client.connect(f"/127.0.0.1:{listener.getsockname()[1]}")
         with pytest.raises(LinkClosed):
-            client.call("x", timeout=5)
+            client.call("x", timeout=HANG)
 
 
 def test_client_is_connected_from_outside(names: LocalNames) -> None:
@@ -416,13 +416,13 @@ def test_client_is_connected_from_outside(names: LocalNames) -> None:
         RpcClient(name="/client", names=names) as client,
     ):
         network.connect("/client", "/server", names=names)
-        assert client.call("x", timeout=5) == ["x"]
+        assert client.call("x", timeout=HANG) == ["x"]
         with pytest.raises(LocalProtocolError, match="RPC output already connected"):
             network.connect("/client", "/other", names=names)
-        assert client.call("y", timeout=5) == ["y"]
+        assert client.call("y", timeout=HANG) == ["y"]
         network.disconnect("/client", "/server", names=names)
         network.connect("/client", "/other", names=names)
-        assert client.call("z", timeout=5) == ["z"]
+        assert client.call("z", timeout=HANG) == ["z"]
 
 
 def test_server_takes_no_outputs(names: LocalNames) -> None:
@@ -436,7 +436,7 @@ def test_server_takes_no_outputs(names: LocalNames) -> None:
 def test_closed_client(names: LocalNames) -> None:
     with RpcServer("/server", echo, names=names) as server:
         client = RpcClient("/server", names=names)
-        assert client.call("x", timeout=5) == ["x"]
+        assert client.call("x", timeout=HANG) == ["x"]
         client.close()
         with pytest.raises(PortClosed):
             client.call("x")
@@ -451,8 +451,8 @@ def test_unnamed_clients_do_not_displace_each_other(names: LocalNames) -> None:
     ):
         assert first.name != second.name
         for number in range(3):
-            assert first.call(number, timeout=5) == [number]
-            assert second.call(number, timeout=5) == [number]
+            assert first.call(number, timeout=HANG) == [number]
+            assert second.call(number, timeout=HANG) == [number]
         assert len(server.inputs) == 2
 
 
@@ -472,11 +472,11 @@ def test_logger_hears_questions_and_answers(names: LocalNames) -> None:
             "Added connection from /server to tcp+log.in://logger; "
             "/server will forward messages and replies (if any) to /logger"
         )
-        assert client.call("ask", 1, timeout=5) == ["yes", "ask", 1]
-        assert logger.read(timeout=5).value == [Vocab("rpc"), ["ask", 1], ["yes", "ask", 1]]
+        assert client.call("ask", 1, timeout=HANG) == ["yes", "ask", 1]
+        assert logger.read(timeout=HANG).value == [Vocab("rpc"), ["ask", 1], ["yes", "ask", 1]]
         writer.connect("/server")
         writer.write(["told"])
-        assert logger.read(timeout=5).value == ["told"]
+        assert logger.read(timeout=HANG).value == ["told"]
         with pytest.raises(LocalProtocolError, match=r"only log\.in is supported"):
             network.connect("/server", "/logger", "tcp+log.out", names=names)
 
@@ -493,12 +493,12 @@ def test_a_question_that_comes_while_the_server_still_opens_is_answered():
 
     def ask() -> None:
         with RpcClient("/server", names=names) as client:
-            answers.append(client.call(1, 2, timeout=5))
+            answers.append(client.call(1, 2, timeout=HANG))
 
     names = Eager()
     asking = threading.Thread(target=ask)
     with RpcServer("/server", echo, names=names):
-        asking.join(5)
+        asking.join(HANG)
     assert answers == [[1, 2]]
 
 
@@ -542,9 +542,9 @@ def test_a_handler_with_a_page_shows_it(names: LocalNames) -> None:
             return "<p>mine</p>" if path == "/" else None
 
     with RpcServer("/server", Handler(), names=names) as server:
-        with urlopen(f"http://{server.address}/", timeout=10) as page:
+        with urlopen(f"http://{server.address}/", timeout=HANG) as page:
             assert page.read() == b"<p>mine</p>"
-        with urlopen(f"http://{server.address}/*", timeout=10) as page:
+        with urlopen(f"http://{server.address}/*", timeout=HANG) as page:
             assert b"/server" in page.read()
 
 

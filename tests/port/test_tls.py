@@ -13,7 +13,7 @@ import numpy as np
 import pytest
 from support.peer import program
 from support.tls import prepare
-from support.wait import wait_until
+from support.wait import HANG, wait_until
 
 import yarpy
 
@@ -91,7 +91,7 @@ def test_nothing_of_a_message_can_be_read_on_the_way(
                 out.connect(f"/127.0.0.1:{number}", carrier if secure else plain)
                 for value in ([SECRET, 1], [SECRET, "x" * 300_000]):
                     out.write(value)
-                    message = in_.read(timeout=10)
+                    message = in_.read(timeout=HANG)
                     assert message is not None
                     assert message.value == value
                 if secure:
@@ -131,7 +131,7 @@ def test_questions_and_pictures(names: yarpy.LocalNames) -> None:
         viewer.connect("/camera", "mjpeg+tls")
         assert camera.wait_for_outputs(1, 10)
         camera.write(picture)
-        message = viewer.read(timeout=10)
+        message = viewer.read(timeout=HANG)
         assert message is not None
         assert message.as_(yarpy.Image).width == 64
 
@@ -163,7 +163,7 @@ def test_a_port_may_insist(
         wait_until(lambda: in_.inputs)
         assert in_.inputs[0].carrier == "tcp+tls"
         out.write([1])
-        assert in_.read(timeout=10)
+        assert in_.read(timeout=HANG)
         with socket.create_connection(("127.0.0.1", in_.contact.port)) as plain:
             plain.sendall(b"CONNECT /me\r\n")
             assert b"TLS alone" in plain.recv(1000)
@@ -176,7 +176,7 @@ def test_name_server_too(monkeypatch: pytest.MonkeyPatch) -> None:
         assert server.client.query("/in") == in_.contact
         out.connect("/in")
         out.write([SECRET])
-        message = in_.read(timeout=10)
+        message = in_.read(timeout=HANG)
         assert message is not None
         assert message.value == [SECRET]
 
@@ -188,7 +188,7 @@ def test_with_a_shared_key_as_well(names: yarpy.LocalNames, tmp_path: Path,
         for carrier in ("tls", "tcp"):
             out.connect("/in", carrier)
             out.write([carrier])
-            message = in_.read(timeout=10)
+            message = in_.read(timeout=HANG)
             assert message is not None
             assert message.value == [carrier]
 
@@ -221,7 +221,7 @@ def test_curl(names: yarpy.LocalNames, folder: Path) -> None:
                 str(folder / "ca.pem"),
                 *words,
             ]
-            done = subprocess.run(line, capture_output=True, text=True, timeout=20, check=False)
+            done = subprocess.run(line, capture_output=True, text=True, timeout=HANG, check=False)
             return done.stdout + done.stderr
 
         assert curl(f"{url}/?req=hello") == '["hello", "heard"]\n'
@@ -245,7 +245,7 @@ def test_openssl(names: yarpy.LocalNames, folder: Path) -> None:
             assert process.stdin is not None
             process.stdin.write(b"CONNECT /person\r\nD\r\nhello 1\r\n")
             process.stdin.flush()
-            message = in_.read(timeout=10)
+            message = in_.read(timeout=HANG)
             assert message is not None
             assert message.value == ["hello", 1]
             process.kill()
@@ -259,5 +259,5 @@ def test_protocols_that_turn_into_another_stay_in_tls(
         url = f"https://{server.address}/"
         line = [program("curl"), "-sS", "--noproxy", "*", "--cacert", str(folder / "ca.pem"),
                 "-H", f"Origin: {url[:-1]}", "-d", "data=hello", url]  # fmt: skip
-        done = subprocess.run(line, capture_output=True, text=True, timeout=20, check=False)
+        done = subprocess.run(line, capture_output=True, text=True, timeout=HANG, check=False)
         assert "hello" in done.stdout, done.stdout + done.stderr

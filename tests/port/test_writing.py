@@ -10,7 +10,7 @@ from contextlib import ExitStack
 import pytest
 from support.lasted import lasted
 from support.system import NO_UNIX_SOCKETS
-from support.wait import wait_until
+from support.wait import HANG, wait_until
 
 from yarpy.data.bottle import Bottle
 from yarpy.data.stamp import Stamp
@@ -58,7 +58,7 @@ def test_twenty_readers_cost_one_encoding(kind: type[MessagePort], names: LocalN
                 Port(name, names=names, callback=lambda m, name=name: heard.append(name))
             )
             out.connect(name, carrier)
-            assert in_.wait_for_inputs(timeout=5)
+            assert in_.wait_for_inputs(timeout=HANG)
         thing = Counting()
         sent = out.write(thing)
         # of the multicast connections one sends for all
@@ -137,7 +137,7 @@ def test_sent_is_delivered_and_drops(
         first = 0
         if carrier == "name_ser":  # which says nothing before the first message
             first = out.write([0])
-        assert in_.wait_for_inputs(timeout=5)
+        assert in_.wait_for_inputs(timeout=HANG)
         done = threading.Event()
         reader = threading.Thread(target=read_all, args=(in_, heard, done))
         if reads != "callback":
@@ -146,7 +146,7 @@ def test_sent_is_delivered_and_drops(
             out.write([number])
             if lossy and number % 20 == 0:
                 time.sleep(0.001)
-        out.flush(timeout=10)
+        out.flush(timeout=HANG)
         sender = out.outputs[0]
         receiver = in_.inputs[0]
         wait_until(lambda: sender.stats.messages + left_out(sender) == count)
@@ -155,7 +155,7 @@ def test_sent_is_delivered_and_drops(
         done.set()
         in_.interrupt()
         if reads != "callback":
-            reader.join(5)
+            reader.join(HANG)
         assert heard.count + left_out(receiver) + left_out(sender) == count
         if writes == "strict" or (writes == "plain" and not lossy):
             assert left_out(sender) == 0
@@ -194,7 +194,7 @@ def test_what_a_slow_reader_misses_is_counted_where_it_was_left_out(names: Local
         stats = out.outputs[0].stats
         assert stats.replaced > 50  # the reader has not taken the first one yet
         assert stats.messages + stats.replaced == 100
-        assert in_.read(timeout=5).value == [0]
+        assert in_.read(timeout=HANG).value == [0]
         assert in_.inputs[0].stats.drops == 0
 
 
@@ -203,7 +203,7 @@ def test_reader_that_dies_is_counted_and_forgotten(names: LocalNames) -> None:
     with Port("/out", names=names) as out:
         sock = socket.create_connection(("127.0.0.1", out.contact.port), 5)
         sock.sendall(b"CONNECT reader\r\nr\r\n")
-        assert out.wait_for_outputs(timeout=5)
+        assert out.wait_for_outputs(timeout=HANG)
         link = out._hub.outputs.links[0]
         sock.close()
         written = 0
@@ -241,9 +241,9 @@ def test_flush_waits_for_what_was_written(names: LocalNames) -> None:
         out.connect("/in")
         for number in range(5):
             out.write([number])
-        assert out.flush(timeout=5)
+        assert out.flush(timeout=HANG)
         assert slow.count == 5
-        assert out.flush(timeout=5)  # nothing left
+        assert out.flush(timeout=HANG)  # nothing left
 
 
 def test_flush_has_a_limit(names: LocalNames) -> None:
@@ -253,8 +253,8 @@ def test_flush_has_a_limit(names: LocalNames) -> None:
         started = time.monotonic()
         assert not out.flush(timeout=0.05)
         assert lasted(started) < 2
-        assert in_.read(timeout=5).value == [1]
-        assert out.flush(timeout=5)
+        assert in_.read(timeout=HANG).value == [1]
+        assert out.flush(timeout=HANG)
 
 
 def test_value_may_be_changed_after_writing(names: LocalNames) -> None:
@@ -265,7 +265,7 @@ def test_value_may_be_changed_after_writing(names: LocalNames) -> None:
         for number in range(200):
             blob[:] = bytes([number]) * 100
             out.write([blob])
-        found = [in_.read(timeout=5).value[0] for _ in range(200)]
+        found = [in_.read(timeout=HANG).value[0] for _ in range(200)]
         assert found == [bytes([number]) * 100 for number in range(200)]
 
 
@@ -274,7 +274,7 @@ def test_writer_to_a_stuck_reader_can_be_closed(names: LocalNames) -> None:
     with Port("/out", names=names) as out:
         sock = socket.create_connection(("127.0.0.1", out.contact.port), 5)
         sock.sendall(b"CONNECT stuck\r\nr\r\n")
-        assert out.wait_for_outputs(timeout=5)
+        assert out.wait_for_outputs(timeout=HANG)
 
         def write() -> None:
             for _ in range(10):
@@ -289,7 +289,7 @@ def test_writer_to_a_stuck_reader_can_be_closed(names: LocalNames) -> None:
         started = time.monotonic()
         out.close()
         assert lasted(started) < 5
-        thread.join(5)
+        thread.join(HANG)
         assert not thread.is_alive()
         sock.close()
 
@@ -306,7 +306,7 @@ def test_what_was_written_before_a_goodbye_arrives(carrier: str, names: LocalNam
         for number in range(count):
             out.write([number, "x" * 1000])
         out.disconnect("/in")
-        got = [in_.read(timeout=20).value[0] for _ in range(count)]
+        got = [in_.read(timeout=HANG).value[0] for _ in range(count)]
         assert got == list(range(count))
 
 

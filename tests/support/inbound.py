@@ -8,6 +8,7 @@ from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 
 from support.transport import ScriptTransport, scripted
+from support.wait import HANG
 
 from yarpy.carriers.base import Carrier
 from yarpy.carriers.own.tcp import Tcp
@@ -87,7 +88,7 @@ def linked(
         yield near, link, owner
     finally:
         near.close()
-        link.thread.join(5)
+        link.thread.join(HANG)
         assert not link.thread.is_alive()
 
 

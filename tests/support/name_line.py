@@ -11,6 +11,8 @@ import threading
 from collections.abc import Iterator
 from typing import Any
 
+from support.wait import HANG
+
 from yarpy.nameserver.command import NameService
 from yarpy.nameserver.reply import Reply
 from yarpy.nameserver.store import NameStore
@@ -128,7 +130,7 @@ def serve_names(service: NameService | None = None, port: int = 0) -> Iterator[N
     finally:
         server.shutdown()
         server.server_close()
-        thread.join(5)
+        thread.join(HANG)
         for connection in server.open:
             with contextlib.suppress(OSError):
                 connection.shutdown(socket.SHUT_RDWR)

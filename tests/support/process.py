@@ -165,7 +165,7 @@ class Process:
         """End the program and all it started at once, as a crash would."""
         for pid in (*descendants(self.pid), self.pid):
             _send(pid, KILL)
-        self._popen.wait(10)
+        self._popen.wait(HANG)
         self.end_input()
 
     def stop(self, grace: float = 2.0) -> None:
@@ -179,7 +179,7 @@ class Process:
         for pid in family:
             if pid != self.pid or self._popen.poll() is None:
                 _send(pid, KILL)
-        self._popen.wait(10)
+        self._popen.wait(HANG)
         self.end_input()
         _running.discard(self)
 

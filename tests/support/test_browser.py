@@ -9,6 +9,7 @@ from http.server import BaseHTTPRequestHandler, ThreadingHTTPServer
 
 import pytest
 from support.browser import OUTPUT, Browser
+from support.wait import HANG
 
 
 class Site(BaseHTTPRequestHandler):
@@ -33,7 +34,7 @@ def site() -> Iterator[str]:
     yield f"127.0.0.1:{server.server_port}"
     server.shutdown()
     server.server_close()
-    thread.join(10)
+    thread.join(HANG)
 
 
 def test_page_and_picture(browser: Browser, site: str) -> None:

@@ -8,7 +8,7 @@ from pathlib import Path
 
 import pytest
 from support.guard import guarded
-from support.wait import wait_until
+from support.wait import HANG, wait_until
 
 linux = pytest.mark.skipif(
     not os.path.exists("/proc/self/environ"), reason="the guard needs /proc, so Linux"
@@ -49,7 +49,7 @@ def test_the_end_of_the_block_is_the_end_of_all() -> None:
         deaf = subprocess.Popen(["sh", "-c", DEAF], stdout=subprocess.PIPE)
         assert deaf.stdout is not None and deaf.stdout.readline()
         other = subprocess.Popen(["sleep", "600"], env={"PATH": os.environ["PATH"]})
-    assert deaf.wait(10) == -signal.SIGKILL
+    assert deaf.wait(HANG) == -signal.SIGKILL
     assert other.poll() is None, "who has no mark is none of ours"
     other.kill()
     other.wait()

@@ -7,6 +7,7 @@ import time
 import pytest
 from support import process as module
 from support.process import Process, descendants
+from support.wait import HANG
 
 
 def python(code: str) -> Process:
@@ -95,7 +96,7 @@ def test_who_lost_its_parent_ends_too() -> None:
     code = "import os, time\nif os.fork() == 0: print('child', os.getpid()); time.sleep(60)"
     with python(code) as process:
         child = int(process.wait_line(r"child (\d+)")[1])
-        assert process._popen.wait(10) == 0
+        assert process._popen.wait(HANG) == 0
         assert is_running(child)
     deadline = time.monotonic() + 5
     while is_running(child) and time.monotonic() < deadline:

@@ -208,5 +208,5 @@ with server:
         with socket.create_connection((host, int(port)), 5) as person:
             person.sendall(b'JSONLINE me\n{"data": [1, 2], "reply": true}\n')
             assert json.loads(person.makefile().readline()) == {"data": 3}
-        process.communicate("\n", timeout=10)
+        process.communicate("\n", timeout=HANG)
     assert process.returncode == 0

@@ -10,6 +10,7 @@ from collections.abc import Iterator
 
 import pytest
 from support.lasted import lasted
+from support.wait import HANG
 
 from yarpy.transports.base import SocketTransport, address_of, send_all, timeval
 from yarpy.wire.stream import Buffer
@@ -46,7 +47,7 @@ def test_buffers_arrive_in_order_and_whole(pair: Pair, sizes: list[int]) -> None
     sender = threading.Thread(target=pair[0].send, args=(buffers,))
     sender.start()
     assert receive(pair[1], sum(sizes)) == b"".join(buffers)
-    sender.join(5)
+    sender.join(HANG)
 
 
 def test_send_goes_on_where_the_kernel_stopped() -> None:
@@ -124,7 +125,7 @@ def test_interrupt_wakes_who_waits(pair: Pair) -> None:
     waiter.start()
     time.sleep(0.05)
     pair[1].interrupt()
-    waiter.join(5)
+    waiter.join(HANG)
     assert found == [0]
     pair[1].interrupt()  # again does no harm
     pair[1].close()

@@ -7,6 +7,7 @@ import socket
 
 import pytest
 from support.system import NO_UNIX_SOCKETS
+from support.wait import HANG
 
 import yarpy
 from yarpy.names.address import is_loopback, local_addresses
@@ -55,7 +56,7 @@ def test_others_reach_what_they_should(
         for carrier in ("tcp", "udp") if NO_UNIX_SOCKETS else ("tcp", "udp", "unix_stream"):
             out.connect("/in", carrier)
             out.write([carrier])
-            message = in_.read(timeout=5)
+            message = in_.read(timeout=HANG)
             assert message is not None
             assert message.value == [carrier]
     told = "open to this computer alone" if setting else "open to all networks"

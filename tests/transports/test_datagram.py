@@ -181,7 +181,7 @@ def woken(end: DatagramTransport, wake: Callable[[], None]) -> float:
     time.sleep(0.05)
     started = time.monotonic()
     wake()
-    thread.join(5)
+    thread.join(HANG)
     assert done, "the receiver still waits"
     return done[0] - started
 
@@ -226,7 +226,7 @@ def test_group_reaches_every_member_and_the_port_stays_shared() -> None:
         found: list[bytes] = []
         thread = threading.Thread(target=lambda m=member, f=found: f.append(receive(m)))
         thread.start()
-        thread.join(5)
+        thread.join(HANG)
         assert found == [b"to all"]
     for end in (*members, sender):
         end.close()

@@ -5,6 +5,7 @@ from typing import Any
 
 import pytest
 from support.guest import guest
+from support.wait import HANG
 
 from yarpy.errors import LocalProtocolError
 from yarpy.transports import inbox
@@ -57,7 +58,7 @@ def test_waiting_ends() -> None:
         thread.start()
     found.interrupt()
     for thread in threads:
-        thread.join(20)
+        thread.join(HANG)
     assert seen == [None, None]
     found.put(Incoming(b"x"), 10)
     assert found.receive() is None

@@ -6,6 +6,7 @@ import threading
 import time
 
 import pytest
+from support.wait import HANG
 
 from yarpy.errors import RemoteProtocolError
 from yarpy.transports import inproc
@@ -90,7 +91,7 @@ def test_interrupt_wakes_who_waits() -> None:
     thread.start()
     time.sleep(0.02)
     far.interrupt()
-    thread.join(5)
+    thread.join(HANG)
     assert found == [None]
     near.close()
 
@@ -137,7 +138,7 @@ def test_each_object_is_read_or_refused_when_the_reader_ends_in_the_middle() -> 
         while (item := far.receive()) is not None:
             read.append(item)
         far.close()
-        thread.join(5)
+        thread.join(HANG)
         assert read == [(number,) for number in sent]
         near.close()
 

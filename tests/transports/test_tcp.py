@@ -56,7 +56,7 @@ def test_little_is_under_way_on_one_computer(size: int) -> None:
     room, filled = memoryview(bytearray(size)), 0
     while filled < size:
         filled += far.recv_into(room[filled:])
-    sender.join(10)
+    sender.join(HANG)
     assert room == sent
     for end in (near, far):
         end.close()
@@ -135,7 +135,7 @@ def test_close_wakes_who_waits() -> None:
     threading.Thread(target=wait, daemon=True).start()
     listener.close()
     listener.close()
-    assert done.wait(5)
+    assert done.wait(HANG)
 
 
 def test_numbers_that_somebody_has() -> None:

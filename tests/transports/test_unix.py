@@ -12,6 +12,7 @@ from pathlib import Path
 
 import pytest
 from support.system import NO_ROOT, NO_UNIX_SOCKETS
+from support.wait import HANG
 
 from yarpy.errors import LocalProtocolError, PortClosed, Timeout
 from yarpy.scope import Scope, moment
@@ -37,7 +38,7 @@ def meet() -> tuple[UnixTransport, UnixTransport]:
     thread = threading.Thread(target=listening.ready)
     thread.start()
     dialling.ready()
-    thread.join(5)
+    thread.join(HANG)
     return listening, dialling
 
 
@@ -85,7 +86,7 @@ def test_dialling_side_may_come_first() -> None:
     time.sleep(0.1)
     listening = open_unix(True, ACCEPTOR, INITIATOR)
     listening.ready()
-    thread.join(5)
+    thread.join(HANG)
     assert not thread.is_alive()
     listening.close()
     dialling.close()

@@ -2,6 +2,8 @@
 
 import os
 
+from support.wait import HANG
+
 import yarpy
 
 
@@ -11,7 +13,7 @@ def test_rpc(cli, names):
         yarpy.Port("/admin/b", names=names) as other,
     ):
         other.connect("/admin/a")
-        assert port.wait_for_inputs(timeout=5)
+        assert port.wait_for_inputs(timeout=HANG)
         text = '[ver]\n[list] [in]\n[help]\n[prop] [set] k "v w"\n[prop] [get] k\nnonsense'
         said = cli.run("admin", "rpc", "/admin/a", input=text)
         assert (said.returncode, said.stderr) == (0, "")

@@ -1,6 +1,7 @@
 """`yarpy connect`."""
 
 import pytest
+from support.wait import HANG
 
 import yarpy
 from yarpy.cli.verbs.connect import entry_line
@@ -85,7 +86,7 @@ def test_failures(here, names, words, complaint):
 def test_persistent(here, ports):
     assert here("connect") == (0, "No persistent connections.\n", "")
     assert here("connect", "--persist", "/connect/a", "/connect/b", "udp") == (0, "", "")
-    assert ports[0].wait_for_outputs(timeout=5)
+    assert ports[0].wait_for_outputs(timeout=HANG)
     assert carriers(ports[0]) == [("/connect/b", "udp")]
     entry = "Persistent connection /connect/a -> udp://connect/b\n"
     assert here("connect", "--persist").out == entry

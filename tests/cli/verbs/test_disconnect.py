@@ -1,6 +1,7 @@
 """`yarpy disconnect`."""
 
 import pytest
+from support.wait import HANG
 
 import yarpy
 
@@ -12,7 +13,7 @@ def test_two_ports(cli, names, carrier):
         yarpy.Port("/disconnect/b", names=names, callback=lambda message: None) as b,
     ):
         a.connect("/disconnect/b", carrier)
-        assert b.wait_for_inputs(timeout=5)
+        assert b.wait_for_inputs(timeout=HANG)
         said = cli.run("disconnect", "/disconnect/a", "/disconnect/b")
         line = "Success: Removed connection from /disconnect/a to /disconnect/b\n"
         assert (said.returncode, said.stdout, said.stderr) == (0, line, "")

@@ -371,13 +371,13 @@ def test_no_client_waits_for_a_slow_terminal(monkeypatch):
 
     def slow(text):
         stuck.set()
-        free.wait(10)
+        free.wait(HANG)
         printed.extend(text.splitlines())
 
     monkeypatch.setattr("yarpy.cli.verbs.server.print_line", slow)
     scribe = Scribe()
     scribe.command("list", "")
-    assert stuck.wait(10)
+    assert stuck.wait(HANG)
     for number in range(BACKLOG + 100):
         scribe.command(f"query {number}", "")
     free.set()

@@ -8,7 +8,7 @@ import time
 
 import pytest
 from support.system import NO_MARKS
-from support.wait import wait_until
+from support.wait import HANG, wait_until
 
 import yarpy
 from yarpy.cli.verbs.stats import Tally, size_of
@@ -99,7 +99,7 @@ def flowing(names):
         out.outputs[0].qos = yarpy.Qos(packets=None if NO_MARKS else "HIGH")
         for number in range(5):
             wait_until(lambda number=number: out.write([number]))
-            in_.read(timeout=5)
+            in_.read(timeout=HANG)
         yield out, in_
 
 

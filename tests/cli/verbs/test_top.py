@@ -23,7 +23,7 @@ def ports(names):
         out.connect("/top/in")
         for number in range(5):
             wait_until(lambda number=number: out.write([number]))
-            in_.read(timeout=5)
+            in_.read(timeout=HANG)
         yield out, in_
 
 

@@ -2,6 +2,8 @@
 
 import json
 
+from support.wait import HANG
+
 import yarpy
 
 
@@ -35,6 +37,6 @@ def test_joins_ports(here, names):
         said = here("connect", "/topic/from", "topic://topic/t")
         assert said == (0, "Success: connection to topic added.\n", "")
         assert here("connect", "topic://topic/t", "/topic/to").code == 0
-        assert source.wait_for_outputs(timeout=5)
+        assert source.wait_for_outputs(timeout=HANG)
         source.write(["x"])
-        assert sink.read(timeout=5).value == ["x"]
+        assert sink.read(timeout=HANG).value == ["x"]

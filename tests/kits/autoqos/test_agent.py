@@ -12,7 +12,7 @@ import pytest
 from support.cpp import CppYarp
 from support.cpp_program import CppProgram
 from support.peer import brings
-from support.wait import wait_until
+from support.wait import HANG, wait_until
 
 import yarpy
 from yarpy.kits.autoqos.agent import Agent, Event
@@ -142,7 +142,7 @@ def nonsense() -> Iterator[int]:
     done.set()
     listener.shutdown(socket.SHUT_RDWR)
     listener.close()
-    thread.join(10)
+    thread.join(HANG)
 
 
 def test_ports_that_answer_nonsense_or_never_do_not_hold_it_up(
@@ -171,7 +171,7 @@ def test_ports_of_cpp_are_set_and_set_back(cpp: CppYarp, tmp_path: Path) -> None
     with CppProgram(cpp) as peer, yarpy.BufferedPort("/late/py") as in_:
         peer.do("port = yarp.BufferedPortBottle(); port.open('/late/cpp')")
         peer.do("yarp.Network.connect('/late/cpp', '/late/py', 'tcp')")
-        assert in_.wait_for_inputs(timeout=10)
+        assert in_.wait_for_inputs(timeout=HANG)
         journal, events = Journal(tmp_path / "journal"), list[Event]()
         agent = Agent(RULES, events.append, journal)
         change = Change("/late/cpp", "/late/py", "packets", "AF42", "CS0")

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 import pytest
+from support.wait import HANG
 
 import yarpy
 from yarpy.errors import LocalProtocolError
@@ -25,7 +26,7 @@ def ports() -> Iterator[Ports]:
         Sampler(names, urgent="tester") as sampler,
     ):
         a.connect("/b", "tcp")
-        assert b.wait_for_inputs(timeout=10)
+        assert b.wait_for_inputs(timeout=HANG)
         yield a, b, sampler, Controls(sampler.ask, names)
 
 
@@ -112,7 +113,7 @@ def test_a_connection_that_was_dialled_by_address() -> None:
         Sampler(names, urgent="tester") as sampler,
     ):
         a.connect(f"/{b.address}/", "tcp")
-        assert b.wait_for_inputs(timeout=10)
+        assert b.wait_for_inputs(timeout=HANG)
         [flow] = sampler.look().flows.values()
         assert (flow.source, flow.target) == ("/a", "/b")
         assert flow.sender

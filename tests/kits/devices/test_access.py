@@ -6,6 +6,7 @@ import time
 
 import pytest
 from support.board import Bare, FakeBoard
+from support.wait import HANG
 
 from yarpy.errors import LocalProtocolError
 from yarpy.kits.devices.access import Access
@@ -91,15 +92,15 @@ def test_one_thread_at_a_time_but_for_what_takes_long():
     class Slow(Bare):
         def park(self, joints):
             entered.set()
-            assert leave.wait(20)
+            assert leave.wait(HANG)
 
     it = access(Slow())
     thread = threading.Thread(target=it.apply, args=("park", [0], None), daemon=True)
     thread.start()
-    assert entered.wait(20)
+    assert entered.wait(HANG)
     assert it.values("encoders") == [1.5, -2.0]  # while it parks
     leave.set()
-    thread.join(20)
+    thread.join(HANG)
 
     inside, most = [0], [0]
 
@@ -119,5 +120,5 @@ def test_one_thread_at_a_time_but_for_what_takes_long():
     for thread in threads:
         thread.start()
     for thread in threads:
-        thread.join(20)
+        thread.join(HANG)
     assert most == [1]

@@ -2,7 +2,7 @@ import logging
 import threading
 
 import pytest
-from support.wait import wait_until
+from support.wait import HANG, wait_until
 
 from yarpy import clock
 from yarpy.kits.devices.publisher import Publisher
@@ -32,14 +32,14 @@ def test_a_step_may_end_it():
     ended = threading.Event()
 
     def step():
-        ready.wait(20)
+        ready.wait(HANG)
         publisher.close()
         ended.set()
 
     ready = threading.Event()
     publisher = Publisher("/head", 0.001, step)
     ready.set()
-    assert ended.wait(20)
+    assert ended.wait(HANG)
 
 
 class Hand(clock.SystemClock):
@@ -88,9 +88,9 @@ def test_a_step_that_does_not_end_is_left_behind(monkeypatch):
 
     def step():
         stuck.set()
-        leave.wait(20)
+        leave.wait(HANG)
 
     publisher = Publisher("/head", 0.001, step)
-    assert stuck.wait(20)
+    assert stuck.wait(HANG)
     publisher.close()
     leave.set()

@@ -28,7 +28,7 @@ import pytest
 from support.multicast import needs_multicast
 from support.port import free_port
 from support.process import Process
-from support.wait import wait_until
+from support.wait import HANG, wait_until
 
 import yarpy
 import yarpy.network.qos
@@ -253,7 +253,7 @@ def stale_multicast(world: World) -> Iterator[tuple[str, ...]]:
 def _forgotten(world: World, carrier: str) -> Iterator[tuple[str, ...]]:
     talker, listener = world.open("/talker"), world.open("/listener")
     talker.connect("/listener", carrier)
-    assert listener.wait_for_inputs(timeout=5)
+    assert listener.wait_for_inputs(timeout=HANG)
     [link] = talker._hub.outputs.links
     # The listener would notice within a second, and mend it.
     with mock.patch.object(Keepalive, "look", lambda self, hubs: None):
@@ -299,7 +299,7 @@ def held_up(world: World) -> Iterator[tuple[str, ...]]:
     thread.start()
     world.stack.callback(thread.join, 10)
     world.stack.callback(busy.set)
-    assert called.wait(5)
+    assert called.wait(HANG)
     time.sleep(0.05)
     yield ("/talker", "/listener")
 
@@ -319,7 +319,7 @@ def late(world: World) -> Iterator[tuple[str, ...]]:
     talker = world.open("/talker")
     listener = world.open("/listener", callback=lambda message: None)
     talker.connect("/listener")
-    assert listener.wait_for_inputs(timeout=5)
+    assert listener.wait_for_inputs(timeout=HANG)
     network.qos.grant(
         "/talker", "/listener", receiver=yarpy.Qos(deadline=0.02, rate=50), names=world.names
     )
@@ -403,7 +403,7 @@ def starved(world: World) -> Iterator[tuple[str, ...]]:
     listener = world.open("/listener", callback=lambda message: None)
     talker.connect("/listener", "tcp+recv.priority+st.10+tc.5+bs.1")
     strong.connect("/listener", "tcp+recv.priority+st.10+tc.5+bs.20")
-    assert listener.wait_for_inputs(2, timeout=5)
+    assert listener.wait_for_inputs(2, timeout=HANG)
     strong.write([0])
     wait_until(lambda: sum(one.stats.messages for one in listener.inputs))
     world.again(lambda: strong.write([0]))
@@ -440,7 +440,7 @@ def nothing_arrives(world: World) -> Iterator[tuple[str, ...]]:
     talker = world.open("/talker")
     listener = world.open("/listener", callback=lambda message: None)
     talker.connect("/listener", "mcast")
-    assert listener.wait_for_inputs(timeout=5)
+    assert listener.wait_for_inputs(timeout=HANG)
     [link] = [one for one in listener._hub.inputs.links if one.carrier.name == "mcast"]
     transport = link.driver.transport
     group = socket.inet_aton(transport._group)
@@ -475,7 +475,7 @@ def not_granted(world: World) -> Iterator[tuple[str, ...]]:
     talker = world.open("/talker")
     listener = world.open("/listener", callback=lambda message: None)
     talker.connect("/listener")
-    assert listener.wait_for_inputs(timeout=5)
+    assert listener.wait_for_inputs(timeout=HANG)
     with contextlib.suppress(yarpy.LocalProtocolError):  # or it was not given in the first place
         listener.inputs[0].qos = yarpy.Qos("FIFO", 5)
     [link] = [one for one in listener._hub.inputs.links if one.route.source == "/talker"]

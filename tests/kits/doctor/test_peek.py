@@ -6,7 +6,7 @@ import socket
 import threading
 import time
 
-from support.wait import wait_until
+from support.wait import HANG, wait_until
 
 import yarpy
 from yarpy.contact import Contact
@@ -52,4 +52,4 @@ def test_who_sends_nonsense_is_left() -> None:
         thread.start()
         seen = peek(Contact("tcp", "/a", "127.0.0.1", server.getsockname()[1]), 0.2)
         assert seen.kind == ""
-        thread.join(5)
+        thread.join(HANG)

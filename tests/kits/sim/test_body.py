@@ -3,6 +3,7 @@
 import threading
 
 import pytest
+from support.wait import HANG
 
 import yarpy.clock
 from yarpy.kits.sim.axis import Axis
@@ -109,7 +110,7 @@ def test_one_thread_at_a_time():
     inside, found = threading.Event(), []
 
     def look() -> None:
-        inside.wait(5)
+        inside.wait(HANG)
         found.append(positions(body)[0])
 
     thread = threading.Thread(target=look)
@@ -119,5 +120,5 @@ def test_one_thread_at_a_time():
         thread.join(0.05)
         assert not found
         joints[0].place(7.0)
-    thread.join(5)
+    thread.join(HANG)
     assert found == [7.0]

@@ -49,7 +49,7 @@ def test_eyes(robot: Robot):
     with yarpy.BufferedPort("/eye") as port:
         for side in ("left", "right"):
             port.listen_to(f"/icubSim/cam/{side}")
-            message = port.read(timeout=20)
+            message = port.read(timeout=HANG)
             image = message.as_(yarpy.Image)
             assert (image.width, image.height, image.code) == (64, 48, "rgb")
             assert message.stamp.time > 1e9
@@ -59,7 +59,7 @@ def test_eyes(robot: Robot):
 def test_inertial_unit(robot: Robot):
     with yarpy.BufferedPort("/inertial") as port:
         port.listen_to("/icubSim/inertial/measures:o")
-        measures = port.read(timeout=20).value
+        measures = port.read(timeout=HANG).value
         assert len(measures) == 10
         gyroscopes, accelerometers, _, orientations = measures[:4]
         assert len(gyroscopes[0][0]) == len(orientations[0][0]) == 3

@@ -212,7 +212,7 @@ def test_peers_that_know_nothing_of_thrift_are_asked_as_yarp_3(answer: Any) -> N
         return answer if len(asked) == 1 else [3.0]
 
     with yarpy.RpcServer("/other", handle, names=names):
-        arm = module.Arm.connect("/other", names=names, timeout=10)
+        arm = module.Arm.connect("/other", names=names, timeout=HANG)
         assert [arm.twice(1.5), arm.twice(1.5)] == [3.0, 3.0]
         arm.close()
     assert asked[1:] == [["twice", 1.5]] * 2

@@ -9,6 +9,7 @@ import time
 import pytest
 from support.port import free_port
 from support.transport import ScriptTransport, scripted
+from support.wait import HANG
 
 from yarpy.errors import LocalProtocolError, RemoteProtocolError, Timeout
 from yarpy.link.begin.greeting import Greeting, driver_of
@@ -92,7 +93,7 @@ def test_peer_is_dialled_once_more() -> None:
         thread.start()
         assert greeting.run(steps(), time.monotonic() + 10) == b"ok"
         assert old.closed
-        thread.join(5)
+        thread.join(HANG)
         greeting.driver.transport.close()
 
 

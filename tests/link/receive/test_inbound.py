@@ -170,7 +170,7 @@ def read(link: Inbound, until: float | None, newest: bool = False) -> Message | 
     """Read as the thread that has the lease does."""
     lease = link.turn.lease
     assert lease is not None
-    assert lease.open or lease.wait(5)
+    assert lease.open or lease.wait(HANG)
     lease.busy = True
     try:
         message = None if lease.over else link.read(lease, until, newest=newest)

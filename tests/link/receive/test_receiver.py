@@ -10,7 +10,7 @@ import pytest
 from support.build import changes_a_constant
 from support.inbound import Owner, linked, message, served
 from support.transport import scripted
-from support.wait import wait_until
+from support.wait import HANG, wait_until
 
 from yarpy.carriers.own.tcp import FastTcp, Tcp
 from yarpy.carriers.own.text import Text, TextAck
@@ -128,7 +128,7 @@ def test_what_is_written_while_reading_leaves_before_waiting() -> None:
         far.sendall(b"one\r\n")
         assert far.recv(100) == b"go on\r\n"
         far.sendall(b"two\r\n")
-        thread.join(5)
+        thread.join(HANG)
         assert not thread.is_alive()
 
 

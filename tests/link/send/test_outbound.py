@@ -8,7 +8,7 @@ import time
 import pytest
 from support.lasted import lasted
 from support.outbound import at_work, connected, open_link, read_messages, total
-from support.wait import wait_until
+from support.wait import HANG, wait_until
 
 from yarpy.carriers.base import Carrier, Delivery
 from yarpy.carriers.own.tcp import FastTcp, Tcp
@@ -110,7 +110,7 @@ def test_background_link_can_send_every_message() -> None:
         for number in range(100):
             link.send(Packet([number]))
         assert link.wait_sent(moment(5))
-        reader.join(5)
+        reader.join(HANG)
         assert not reader.is_alive()
         assert link.counter.messages == 100
         assert link.counter.drops == 0
@@ -126,7 +126,7 @@ def test_background_link_whose_peer_goes() -> None:
                 attempts += 1
                 link.send(Packet([number]))
         assert link.thread is not None
-        link.thread.join(5)
+        link.thread.join(HANG)
         assert not link.thread.is_alive()
         assert total(link) == attempts
 
@@ -190,7 +190,7 @@ def test_link_to_a_peer_that_takes_nothing_can_be_closed(
         started = time.monotonic()
         link.close()
         assert lasted(started) < 3
-        writer.join(5)
+        writer.join(HANG)
         assert len(ended) == 1
         assert link.counter.messages == 0
 
@@ -210,7 +210,7 @@ def test_goodbye_waits_for_what_is_on_its_way() -> None:
         assert len(found) == 5
         assert far.recv(1000) == framing.QUIT
         far.sendall(ACK)
-        thread.join(5)
+        thread.join(HANG)
         assert link.counter.messages == 5
         assert link.counter.drops == 0
 

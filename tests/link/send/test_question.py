@@ -105,7 +105,7 @@ def test_call_behind_a_stuck_message_has_its_limit_too() -> None:
         assert not link.wait_acknowledged(moment(0.1))
         assert lasted(started) < 3
         link.driver.transport.interrupt()
-        writer.join(5)
+        writer.join(HANG)
         assert not writer.is_alive()
 
 
@@ -137,7 +137,7 @@ def test_reply_that_has_begun_must_come_along(
         with pytest.raises(RemoteProtocolError, match="a message"):
             link.call(Packet(["ask"], key=CALL))
         assert link.broken
-        thread.join(5)
+        thread.join(HANG)
 
 
 def test_reply_in_pieces_leaves_no_limit_behind(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -170,7 +170,7 @@ def test_reply_in_pieces_leaves_no_limit_behind(monkeypatch: pytest.MonkeyPatch)
         assert link.incoming.budget.total > 0
         link.incoming.leave()
         assert link.incoming.budget.total == 0
-        thread.join(5)
+        thread.join(HANG)
 
 
 def interrupted(view: memoryview) -> int:
@@ -222,7 +222,7 @@ def test_a_port_that_ends_wakes_whoever_waits_for_an_answer() -> None:
         thread.start()
         with pytest.raises(PortClosed, match="it is over"):
             link.call(Packet(["ask"], key=CALL))
-        thread.join(5)
+        thread.join(HANG)
         assert link.broken, "a late answer must not be taken for another one"
 
 

@@ -9,6 +9,7 @@ from contextlib import suppress
 import pytest
 from support.build import replaces_a_method
 from support.moments import Cut, cut, elsewhere, moments
+from support.wait import HANG
 
 from yarpy.errors import LinkClosed
 from yarpy.link.counter import Counter
@@ -39,7 +40,7 @@ class Slow:
 
     def send(self, packet: Packet, due: float | None) -> None:
         self.begun.set()
-        assert self.go.wait(5)
+        assert self.go.wait(HANG)
         if self.fails:
             raise LinkClosed("gone")
         self.sent.append(packet.value)
@@ -48,7 +49,7 @@ class Slow:
 def test_one_message_is_on_its_way_and_others_are_dropped() -> None:
     slow = Slow()
     assert slow.offer(1)
-    assert slow.begun.wait(5)
+    assert slow.begun.wait(HANG)
     assert not slow.offer(2)
     assert not slow.offer(3)
     slow.go.set()
@@ -58,14 +59,14 @@ def test_one_message_is_on_its_way_and_others_are_dropped() -> None:
     assert slow.queue.wait_empty(moment(5))
     assert slow.sent == [1, 4]
     slow.queue.stop()
-    slow.thread.join(5)
+    slow.thread.join(HANG)
     assert not slow.thread.is_alive()
 
 
 def test_patient_writer_waits_for_its_turn() -> None:
     slow = Slow()
     slow.wait(1)
-    assert slow.begun.wait(5)
+    assert slow.begun.wait(HANG)
     slow.wait(2)  # one may wait
     third = threading.Thread(target=slow.wait, args=(3,), daemon=True)
     third.start()
@@ -73,7 +74,7 @@ def test_patient_writer_waits_for_its_turn() -> None:
     assert third.is_alive()
     assert not slow.queue.wait_empty(moment(0.01))
     slow.go.set()
-    third.join(5)
+    third.join(HANG)
     assert slow.queue.wait_empty(moment(5))
     assert slow.sent == [1, 2, 3]
     assert slow.counter.drops == 0
@@ -83,7 +84,7 @@ def test_patient_writer_waits_for_its_turn() -> None:
 def test_stopping_counts_what_still_waited() -> None:
     slow = Slow()
     slow.wait(1)
-    assert slow.begun.wait(5)
+    assert slow.begun.wait(HANG)
     slow.wait(2)
     slow.queue.stop()
     assert slow.counter.drops == 1
@@ -91,7 +92,7 @@ def test_stopping_counts_what_still_waited() -> None:
     assert not slow.wait(4)
     assert slow.queue.wait_empty(moment(5))
     slow.go.set()
-    slow.thread.join(5)
+    slow.thread.join(HANG)
     assert slow.sent == [1]
 
 
@@ -100,7 +101,7 @@ def test_failing_send_stops_the_queue() -> None:
     slow.fails = True
     slow.go.set()
     slow.wait(1)
-    slow.thread.join(5)
+    slow.thread.join(HANG)
     assert not slow.thread.is_alive()
     assert not slow.wait(2)
 
@@ -114,7 +115,7 @@ def test_a_defect_in_sending_leaves_nobody_waiting() -> None:
     assert queue.put(Packet([1]), None, 0)
     assert queue.wait_empty(moment(5))
     assert queue.thread is not None
-    queue.thread.join(5)
+    queue.thread.join(HANG)
     assert queue.stopped
 
 
@@ -140,6 +141,6 @@ def test_no_signal_handler_leaves_the_queue_locked(verb: str) -> None:
             return slow.queue.stopped
 
         assert elsewhere(others)
-        slow.thread.join(5)
+        slow.thread.join(HANG)
         assert not slow.thread.is_alive()
     assert tried > 5

@@ -17,7 +17,7 @@ from support.capture import load_capture
 from support.moments import moments
 from support.outbound import at_work, connected, link_on, open_link, read_messages, total
 from support.transport import scripted
-from support.wait import wait_until
+from support.wait import HANG, wait_until
 
 from yarpy.carriers.base import Carrier
 from yarpy.carriers.own.tcp import FastTcp, Tcp
@@ -311,7 +311,7 @@ def test_a_goodbye_without_acknowledgements_waits_until_the_peer_has_read_all(
             pass
         far.recv(100)
         far.close()
-        thread.join(20)
+        thread.join(HANG)
         counter = link.counter
         assert (counter.messages, counter.drops, counter.unconfirmed) == (10, 0, 0)
 

@@ -6,7 +6,7 @@ import time
 
 import pytest
 from support.build import COMPILED
-from support.wait import wait_until
+from support.wait import HANG, wait_until
 
 from yarpy.link.send.sweeper import GATHER_SECONDS, Sweeper
 
@@ -29,7 +29,7 @@ def test_sweeper_comes_soon_and_sleeps_when_nothing_is_left() -> None:
     sweeper.watch()
     wait_until(lambda: len(sweeps) == 6)
     sweeper.stop()
-    sweeper.thread.join(5)
+    sweeper.thread.join(HANG)
     assert not sweeper.thread.is_alive()
 
 

@@ -7,6 +7,7 @@ import time
 
 import pytest
 from support.outbound import connected, open_link, read_messages
+from support.wait import HANG
 
 from yarpy.carriers.base import Limits
 from yarpy.carriers.own.tcp import Tcp
@@ -34,7 +35,7 @@ def test_acknowledgements_are_read_late_but_within_a_window() -> None:
         assert link.sender.window.open <= WINDOW
         far.sendall(ACK * 10)
         read_messages(far, 2 * WINDOW - 10)
-        assert done.wait(5)
+        assert done.wait(HANG)
         assert link.wait_acknowledged(moment(5))
         assert link.sender.window.open == 0
 

@@ -378,7 +378,7 @@ def test_both_ends(names: yarpy.LocalNames, kind: str, carrier: str) -> None:
         for value, passes in ((mine, True), (["drop"], False), (["ho", [2.5]], True)):
             wait_until(lambda value=value, passes=passes: out.write(value, "5 0.5") == passes)
             if passes:
-                got = in_.read(timeout=5)
+                got = in_.read(timeout=HANG)
                 assert got.value == [*value, 1, 1]
                 assert (got.source, got.envelope) == ("/out", "5 0.5")
         assert mine == ("hi",)  # what the program wrote is its own
@@ -402,7 +402,7 @@ def test_calls_and_settings(names: yarpy.LocalNames, kind: str) -> None:
         done = admin("set", "in", "/out", ["level", 5])
         assert done == [0, "Configured connection from /out\r\n"]
         out.write(["hi"])
-        assert in_.read(timeout=5).value == ["hi", 5]
+        assert in_.read(timeout=HANG).value == ["hi", 5]
         wrong = admin("set", "in", "/out", ["other", 5])
         assert kind == "lua" or (isinstance(wrong, list) and "gate.py" in wrong[1])
 
@@ -415,7 +415,7 @@ def test_attached_to_a_port(names: yarpy.LocalNames, kind: str) -> None:
         assert network.admin("/out", "atch", "out", text, names=names) == [Vocab("ok")]
         assert out.write(["drop"]) == 0
         assert out.write(["hi"]) == 1
-        assert in_.read(timeout=5).value == ["hi", 1, 1]
+        assert in_.read(timeout=HANG).value == ["hi", 1, 1]
         assert network.admin("/in", "get", "in", "/in", names=names) == [[["level", 1]]]
         reply = network.admin(
             "/in", "atch", "in", f"(type {kind}) (file nosuch) (context app)", names=names
@@ -423,10 +423,10 @@ def test_attached_to_a_port(names: yarpy.LocalNames, kind: str) -> None:
         assert reply[0] == Vocab("fail")
         assert '"nosuch"' in reply[1]
         out.write(["ho"])  # the one before stays
-        assert in_.read(timeout=5).value == ["ho", 1, 1]
+        assert in_.read(timeout=HANG).value == ["ho", 1, 1]
         assert network.admin("/in", "dtch", "in", names=names) == [Vocab("ok")]
         out.write(["ha"])
-        assert in_.read(timeout=5).value == ["ha", 1]
+        assert in_.read(timeout=HANG).value == ["ha", 1]
 
 
 def test_without_a_script_there_is_no_connection(
@@ -510,9 +510,9 @@ def test_others_of_the_port_are_triggered(names: yarpy.LocalNames, app: Path) ->
         a.write(["a1"])
         wait_until(lambda: any(link.stats.drops for link in in_.inputs))
         b.write(["b1"])
-        assert in_.read(timeout=5).value == ["b1"]
+        assert in_.read(timeout=HANG).value == ["b1"]
         a.write(["a2"])
-        assert in_.read(timeout=5).value == ["a2"]
+        assert in_.read(timeout=HANG).value == ["a2"]
 
 
 def test_timer_of_a_script_ends_with_its_connection(names: yarpy.LocalNames, app: Path) -> None:

@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 import pytest
 from support.monitor import place, received
+from support.wait import HANG
 
 import yarpy
 from yarpy import Image, LocalProtocolError
@@ -182,7 +183,7 @@ def test_camera_over_a_port(carrier: str) -> None:
     ):
         camera.connect("/reader", f"{carrier}+recv.bayer+order.rggb+method.hqlinear")
         camera.write(mosaic(picture, "rggb"), yarpy.Stamp(3, 0.5))
-        message = reader.read(timeout=5)
+        message = reader.read(timeout=HANG)
         assert message is not None
         assert message.stamp == yarpy.Stamp(3, 0.5)
         image = message.as_(Image)

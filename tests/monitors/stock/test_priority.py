@@ -228,7 +228,7 @@ class Senders:
     def close(self) -> None:
         self._stop.set()
         for thread in self._threads:
-            thread.join(5)
+            thread.join(HANG)
         for port in self.ports:
             port.close()
 
@@ -246,7 +246,7 @@ def only(port: yarpy.BufferedPort, name: str) -> None:
 
     def settled() -> bool:
         for _ in range(5):
-            last.append(port.read(timeout=5).value[0])
+            last.append(port.read(timeout=HANG).value[0])
         return set(last[-20:]) == {name}
 
     wait_until(settled, timeout=HANG, what=f"only {name} gets through")

@@ -30,7 +30,7 @@ def test_closing_ends_the_wait() -> None:
     thread = threading.Thread(target=monitor.update, args=(Message(DATA),))
     thread.start()
     monitor.close()
-    thread.join(10)
+    thread.join(HANG)
     assert not thread.is_alive()
 
 
@@ -71,5 +71,5 @@ def test_order_is_kept() -> None:
         )
         for number in range(5):
             out.write(number)
-        read = [in_.read(timeout=10) for _ in range(5)]
+        read = [in_.read(timeout=HANG) for _ in range(5)]
         assert [message.value for message in read if message] == [0, 1, 2, 3, 4]

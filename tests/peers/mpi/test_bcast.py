@@ -11,7 +11,7 @@ from collections.abc import Iterator
 
 import pytest
 from support.mpi_hall import FakeLibrary, Hall
-from support.wait import wait_until
+from support.wait import HANG, wait_until
 
 from yarpy.errors import LocalProtocolError
 from yarpy.peers.mpi import bcast as mpi_bcast
@@ -44,7 +44,7 @@ class Net:
         thread = threading.Thread(target=reader.ready)
         thread.start()
         sender.ready()
-        thread.join(20)
+        thread.join(HANG)
         self.ends += [sender, reader]
         return sender, reader
 

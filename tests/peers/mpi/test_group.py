@@ -9,7 +9,7 @@ from collections.abc import Iterator
 
 import pytest
 from support.mpi_hall import Failed, FakeLibrary, Hall
-from support.wait import wait_until
+from support.wait import HANG, wait_until
 
 from yarpy.errors import RemoteProtocolError
 from yarpy.peers.mpi import group as mpi_group
@@ -51,7 +51,7 @@ class Follower:
             self.error = error
 
     def ended(self) -> bool:
-        self.thread.join(20)
+        self.thread.join(HANG)
         return not self.thread.is_alive()
 
 
@@ -87,7 +87,7 @@ def test_numbers_are_those_of_cpp(hall: Hall, line: Line) -> None:
     thread = threading.Thread(target=member.connect, args=("one",))
     thread.start()
     group.join("one", line)
-    thread.join(20)
+    thread.join(HANG)
     seen: list[bytes] = []
     group.offer(b"hello")
     group.wait_sent(20)

@@ -8,6 +8,7 @@ import threading
 from collections.abc import Sequence
 
 import pytest
+from support.wait import HANG
 
 from yarpy.errors import LocalProtocolError
 from yarpy.peers.mpi import helper
@@ -68,7 +69,7 @@ def test_bytes_both_ways_and_the_end(monkeypatch: pytest.MonkeyPatch) -> None:
         ours.sendall(b"hello")
         assert file.read(5) == b"hello"
         ours.shutdown(socket.SHUT_WR)
-        assert end.closed.wait(20)
+        assert end.closed.wait(HANG)
         assert file.read() == b""
     end._far.close()
 

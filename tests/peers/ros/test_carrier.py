@@ -20,6 +20,7 @@ from support.ros_link import (
     taken_header,
     welcomed,
 )
+from support.wait import HANG
 
 import yarpy
 from yarpy.errors import AccessRefused, DecodeError, RemoteProtocolError, YarpError
@@ -356,9 +357,9 @@ def test_what_does_not_fit_counts_as_a_drop(monkeypatch: pytest.MonkeyPatch) -> 
         yarpy.BufferedPort("/reader", names=names, strict=True) as reader,
     ):
         reader.connect("/chatter+@/me", "tcpros+topic./chatter")
-        assert writer.wait_for_outputs(timeout=5)
+        assert writer.wait_for_outputs(timeout=HANG)
         writer.write([42])
         writer.write("fits")
-        assert reader.read(timeout=5).value == "fits"
+        assert reader.read(timeout=HANG).value == "fits"
         stats = writer.outputs[0].stats
         assert (stats.messages, stats.drops) == (1, 1)

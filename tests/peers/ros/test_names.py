@@ -2,6 +2,7 @@
 
 import pytest
 from support.ros_graph import RosGraph
+from support.wait import HANG
 
 import yarpy
 from yarpy.errors import AddressError, LocalProtocolError, UnknownName
@@ -25,7 +26,7 @@ def test_ports_find_each_other_by_a_master_alone(graph: RosGraph) -> None:
         assert "/rx__i" in graph.tool("rosnode", "list")
         sender.connect("/rx:i")
         sender.write([1, "two"])
-        assert receiver.read(timeout=5).value == [1, "two"]
+        assert receiver.read(timeout=HANG).value == [1, "two"]
         assert names.query("/nobody") is None
     assert names.query("/rx:i") is None
     assert "/rx__i" not in graph.tool("rosnode", "list")

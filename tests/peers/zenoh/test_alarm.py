@@ -7,7 +7,7 @@ import threading
 import time
 
 import pytest
-from support.wait import wait_until
+from support.wait import HANG, wait_until
 
 from yarpy.peers.zenoh.alarm import CLOCK, AlarmClock
 
@@ -28,7 +28,7 @@ def test_an_earlier_one_is_not_kept_waiting() -> None:
     clock, called = AlarmClock(), threading.Event()
     clock.set(time.monotonic() + 3600, lambda: None)
     clock.set(time.monotonic(), called.set)
-    assert called.wait(20)
+    assert called.wait(HANG)
 
 
 @pytest.mark.skipif(not hasattr(os, "fork"), reason="there is no fork here")
@@ -36,11 +36,11 @@ def test_an_earlier_one_is_not_kept_waiting() -> None:
 def test_a_forked_process_has_one_of_its_own() -> None:
     called = threading.Event()
     CLOCK.set(time.monotonic(), called.set)
-    assert called.wait(20)
+    assert called.wait(HANG)
     child = os.fork()
     if not child:
         called.clear()
         CLOCK.set(time.monotonic(), called.set)
-        os._exit(0 if called.wait(20) else 1)
+        os._exit(0 if called.wait(HANG) else 1)
     assert os.waitpid(child, 0)[1] == 0
     wait_until(lambda: CLOCK._running)

@@ -7,7 +7,7 @@ from pathlib import Path
 
 import pytest
 from support.port import free_port
-from support.wait import wait_until
+from support.wait import HANG, wait_until
 
 import yarpy
 from yarpy.errors import NoNameServer, YarpError
@@ -57,12 +57,12 @@ def talk(server: yarpy.NameServer, names: ZenohNames) -> None:
         wait_until(lambda: server.client.query("/modern"))
         out.connect("/modern")
         out.write("from the server's world")
-        assert modern.read(timeout=10).value == "from the server's world"
+        assert modern.read(timeout=HANG).value == "from the server's world"
         modern_out.connect("/classical")
         modern_out.write("from Zenoh")
-        assert classical.read(timeout=10).value == "from Zenoh"
+        assert classical.read(timeout=HANG).value == "from Zenoh"
         with yarpy.RpcClient("/adder", names=names) as client:
-            assert client.ask([1, 2], timeout=10).value == [3]
+            assert client.ask([1, 2], timeout=HANG).value == [3]
         found = [contact.name for contact in names.list()]
         assert found == ["/adder", "/classical", "/modern", "/modern/out", "/out"]
     wait_until(lambda: not names.list())
@@ -129,4 +129,4 @@ def test_rules_hold_for_those_who_are_brought(
         wait_until(lambda: names.query("/classical"))
         stranger.connect("/classical")
         stranger.write("let in")
-        assert classical.read(timeout=10).value == "let in"
+        assert classical.read(timeout=HANG).value == "let in"

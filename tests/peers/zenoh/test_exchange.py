@@ -9,7 +9,7 @@ from typing import Any
 
 import pytest
 from support.port import free_port
-from support.wait import wait_until
+from support.wait import HANG, wait_until
 
 from yarpy.peers.zenoh import exchange as zenoh_exchange
 from yarpy.peers.zenoh.address import host_zid, zid_host
@@ -187,7 +187,7 @@ def test_strange_calls_are_refused(net: Net, hello: bytes) -> None:
     net.far.listen(5, lambda pipe: called.set())
     for number in ("5", "99999", "x"):
         answers: list[Any] = [
-            *net.near.session.get(f"@yarp/open/{net.far.zid}/{number}", payload=hello, timeout=5)
+            *net.near.session.get(f"@yarp/open/{net.far.zid}/{number}", payload=hello, timeout=HANG)
         ]
         assert [answer.ok for answer in answers] == [None]
     assert not called.is_set()

@@ -8,7 +8,7 @@ import threading
 from collections.abc import Iterator
 
 import pytest
-from support.wait import wait_until
+from support.wait import HANG, wait_until
 from support.zenoh import Wire
 
 from yarpy.peers.zenoh import gateway as zenoh_gateway
@@ -112,7 +112,7 @@ def test_who_comes_out_of_zenoh_is_brought_to_a_port() -> None:
             assert sock.recv(100) == b"hello"
             sock.sendall(b"back")
             assert read(other) == b"back"
-        thread.join(20)
+        thread.join(HANG)
     one, other = pipes()
     bring(one, "127.0.0.1", number)  # nobody listens there any more
     assert read(other) == b""

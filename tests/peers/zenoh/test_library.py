@@ -6,6 +6,7 @@ import sys
 import threading
 
 import pytest
+from support.wait import HANG
 
 from yarpy.errors import (
     UnknownPlugin,
@@ -22,15 +23,15 @@ def test_the_end_of_a_program_waits_for_those_who_wait_in_zenoh() -> None:
     def wait() -> None:
         with calls:
             inside.set()
-            woken.wait(20)
+            woken.wait(HANG)
 
     thread = threading.Thread(target=wait)
     thread.start()
-    inside.wait(20)
+    inside.wait(HANG)
     calls.refuse()
     calls.wait()
     assert woken.is_set() and not calls._waiting
-    thread.join(20)
+    thread.join(HANG)
     with pytest.raises(ConnectionAbortedError), calls:
         raise AssertionError("it is over")
 

@@ -9,7 +9,7 @@ from typing import Any
 
 import pytest
 from support.port import free_port
-from support.wait import wait_until
+from support.wait import HANG, wait_until
 
 import yarpy
 from yarpy.config.configuration import configuration
@@ -72,7 +72,7 @@ def test_ports_find_each_other_over_two_routers(near: ZenohNames, far: ZenohName
         assert found == there.contact
         here.connect("/far/in")
         here.write("over tcp")
-        assert there.read(timeout=10).value == "over tcp"
+        assert there.read(timeout=HANG).value == "over tcp"
         assert [contact.name for contact in near.list()] == ["/far/in", "/here"]
         assert [contact.name for contact in far.list("/far")] == ["/far/in"]
         assert near.get("/far/in", "process") and near.get("/far/in", "nothing") == []
@@ -208,7 +208,7 @@ def test_a_name_from_the_future_is_not_let_go(near: ZenohNames, far: ZenohNames)
     far._claim(far._open().session, tomorrow)
     for said in (b"nonsense", zenoh_key.encode([replace(entry, start=1)])):
         key = zenoh_key.name_key(far.base, "/mine")
-        assert list(far._open().session.get(key, payload=said, timeout=5)) == []
+        assert list(far._open().session.get(key, payload=said, timeout=HANG)) == []
     assert far.query("/mine")
 
 

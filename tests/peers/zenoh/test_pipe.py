@@ -152,7 +152,7 @@ def test_nobody_sends_more_than_is_wanted() -> None:
     sender = threading.Thread(target=wire.one.send, args=([b"more"],))
     sender.start()
     read(wire.other, zenoh_pipe.WINDOW)
-    sender.join(20)
+    sender.join(HANG)
     assert read(wire.other, 4) == b"more"
 
 
@@ -268,7 +268,7 @@ def test_waiting_has_an_end() -> None:
     )
     reader.start()
     wire.one.interrupt()
-    reader.join(20)
+    reader.join(HANG)
     assert woken == [0]
     with pytest.raises(BrokenPipeError):
         wire.one.send([b"x"])

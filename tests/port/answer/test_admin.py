@@ -5,7 +5,7 @@ from __future__ import annotations
 import struct
 
 import pytest
-from support.wait import wait_until
+from support.wait import HANG, wait_until
 
 from yarpy import network
 from yarpy.data.bottle import Bottle
@@ -91,7 +91,7 @@ def test_message_that_is_no_bottle_is_refused(names: LocalNames) -> None:
 def test_connection_can_be_deleted_from_either_end(names: LocalNames) -> None:
     with Port("/out", names=names) as out, Port("/in", names=names) as in_:
         out.connect("/in")
-        assert in_.wait_for_inputs(timeout=5)
+        assert in_.wait_for_inputs(timeout=HANG)
         reply = network.admin("/in", Vocab("del"), "/out", names=names)
         assert reply == [0, "Removing connection from /out to /in\r\n"]
 
@@ -99,7 +99,7 @@ def test_connection_can_be_deleted_from_either_end(names: LocalNames) -> None:
 def test_replies_have_lists_of_names_and_details(names: LocalNames) -> None:
     with Port("/out", names=names) as out, Port("/in", names=names) as in_:
         out.connect("/in", "udp")
-        assert in_.wait_for_inputs(timeout=5)
+        assert in_.wait_for_inputs(timeout=HANG)
         assert network.admin("/out", "list", "out", names=names) == ["/in"]
         # Who asked before may still be there.
         wait_until(lambda: network.admin("/in", "list", "in", names=names) == ["/out", "admin"])

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 
 import pytest
+from support.wait import HANG
 
 from yarpy import network
 from yarpy.carriers.web.http.page import Page
@@ -58,7 +59,7 @@ def test_failing_callback_is_logged(names: LocalNames, caplog: pytest.LogCapture
     with Port("/in", names=names, on_connection=fail) as in_, Port("/out", names=names) as out:
         out.connect("/in")
         out.write([1])
-        assert in_.read(timeout=5).value == [1]
+        assert in_.read(timeout=HANG).value == [1]
     assert "the connection callback failed" in caplog.text
 
 

@@ -6,6 +6,7 @@ import socket
 
 import pytest
 from support.listener import listening
+from support.wait import HANG
 
 from yarpy.nameserver.local import LocalNames
 from yarpy.port.answer import command
@@ -58,7 +59,7 @@ def test_description_lists_every_connection(names: LocalNames) -> None:
             "There are no incoming connections",
         ]
         out.connect("/in", "udp")
-        assert in_.wait_for_inputs(timeout=5)
+        assert in_.wait_for_inputs(timeout=HANG)
         assert command.describe(out._hub)[1] == (
             "There is an output connection from /out to /in using udp"
         )

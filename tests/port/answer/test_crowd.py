@@ -9,7 +9,7 @@ from types import SimpleNamespace
 from typing import Any
 
 import pytest
-from support.wait import wait_until
+from support.wait import HANG, wait_until
 
 from yarpy.carriers.base import Delivery
 from yarpy.errors import RemoteProtocolError
@@ -56,7 +56,7 @@ def test_300_greetings_leave_room_for_a_sender(names: LocalNames) -> None:
         out.connect("/in", "udp")
         for number in range(150):
             out.write([number])
-        assert all_here.wait(20)
+        assert all_here.wait(HANG)
         assert came == list(range(150))
         assert [link.carrier for link in out.outputs] == ["udp"]
 
@@ -97,7 +97,7 @@ def test_who_finds_no_place_is_told_before_it_sends(
         )
         first.connect("/in", "udp")
         first.write(["hello"])
-        assert port.read(timeout=10).value == ["hello"]
+        assert port.read(timeout=HANG).value == ["hello"]
         answer = greet(port.contact.port, 0)
         assert answer.startswith(b"* there are too many inputs over datagrams")
         with pytest.raises(RemoteProtocolError, match="too many inputs over datagrams"):

@@ -6,7 +6,7 @@ import logging
 from collections.abc import Iterator
 
 import pytest
-from support.wait import wait_until
+from support.wait import HANG, wait_until
 
 import yarpy
 from yarpy import registry
@@ -67,7 +67,7 @@ def test_both_ends_of_a_connection(names, carrier, kind) -> None:
         for number, value in enumerate((["hi"], ["drop"], ["ho"])):
             wait_until(lambda value=value: out.write(value, "5 0.5") == (value != ["drop"]))
             if number != 1:
-                message = in_.read(timeout=5)
+                message = in_.read(timeout=HANG)
                 assert message.value == [*value, "a", "b"]
                 assert (message.source, message.envelope) == ("/out", "5 0.5")
         wait_until(lambda: out.outputs[0].stats.messages == 2)
@@ -80,7 +80,7 @@ def test_what_the_receiver_drops_is_counted_there(names) -> None:
         out.connect("/in", "tcp+recv.word")
         for value in (["drop"], ["drop"], ["hi"]):
             assert out.write(value) == 1
-        assert in_.read(timeout=5).value == ["hi", "x"]
+        assert in_.read(timeout=HANG).value == ["hi", "x"]
         stats = in_.inputs[0].stats
         assert (stats.messages, stats.drops) == (3, 2)
 
@@ -101,8 +101,8 @@ def test_a_dropped_question_is_answered_with_nothing(names) -> None:
         yarpy.RpcClient(names=names) as client,
     ):
         client.connect("/server", "tcp+recv.word")
-        assert client.call("drop", timeout=5) == []
-        assert client.call("hi", timeout=5) == ["hi", "x"]
+        assert client.call("drop", timeout=HANG) == []
+        assert client.call("hi", timeout=HANG) == ["hi", "x"]
 
 
 @pytest.mark.parametrize(
@@ -138,7 +138,7 @@ def test_parameters_while_running(names) -> None:
         prop = ["prop", "set", "/in", ["monitor", [["word", "d"]]]]
         assert admin(out, *prop) == [Vocab("ok")]
         out.write(["hi"])
-        assert in_.read(timeout=5).value == ["hi", "d", "c"]
+        assert in_.read(timeout=HANG).value == ["hi", "d", "c"]
 
 
 def test_attached_to_a_port(names) -> None:
@@ -147,17 +147,17 @@ def test_attached_to_a_port(names) -> None:
         out.connect("/in", "tcp+recv.word+word.first")
         assert admin(out, "atch", "out", ["monitor", "word"], ["word", "out"]) == [Vocab("ok")]
         assert out.write(["hi"]) == 1
-        assert in_.read(timeout=5).value == ["hi", "out", "first", "late"]
+        assert in_.read(timeout=HANG).value == ["hi", "out", "first", "late"]
         assert out.write(["drop"]) == 0
         assert out.outputs[0].stats.drops == 1
         assert admin(out, "get", "out", "/out") == [[["word", "out"]]]
         assert admin(out, "set", "out", "/out", ["word", "new"]) == [Vocab("ok")]
         assert admin(in_, "dtch", "in") == [Vocab("ok")]
         out.write(["ho"])
-        assert in_.read(timeout=5).value == ["ho", "new", "first"]
+        assert in_.read(timeout=HANG).value == ["ho", "new", "first"]
         assert admin(out, "dtch", "out") == [Vocab("ok")]
         out.write(["ha"])
-        assert in_.read(timeout=5).value == ["ha", "first"]
+        assert in_.read(timeout=HANG).value == ["ha", "first"]
 
 
 def test_monitor_of_a_port_is_told_one_name(names) -> None:

@@ -8,7 +8,7 @@ import threading
 
 import pytest
 from support.system import NO_MARKS
-from support.wait import wait_until
+from support.wait import HANG, wait_until
 
 from yarpy import network
 from yarpy.data.bottle import Bottle
@@ -79,7 +79,7 @@ def test_kinds_of_ports(kind: str, flags: tuple[int, int, int], names: LocalName
 def test_packet_priority_reaches_the_socket(names: LocalNames) -> None:
     with Port("/out", names=names) as out, Port("/in", names=names) as in_:
         out.connect("/in")
-        assert in_.wait_for_inputs(timeout=5)
+        assert in_.wait_for_inputs(timeout=HANG)
         for name, peer, port in (("/out", "/in", out), ("/in", "/out", in_)):
             for words, tos in (
                 ("priority HIGH", 144),
@@ -146,7 +146,7 @@ def test_what_is_refused(command: str, names: LocalNames) -> None:
         assert admin(names, "/out", command) == [Vocab("fail")]
         assert network.is_connected("/out", "/in", names=names)
         out.write([1])
-        assert in_.read(timeout=5).value == [1]
+        assert in_.read(timeout=HANG).value == [1]
 
 
 def test_dict_is_refused_as_in_cpp(names: LocalNames) -> None:
@@ -185,7 +185,7 @@ def test_scheduling_of_an_output_waits_for_its_thread(names: LocalNames) -> None
 def test_scheduling_of_an_input_is_its_threads(names: LocalNames) -> None:
     with Port("/out", names=names) as out, Port("/in", names=names) as in_:
         out.connect("/in")
-        assert in_.wait_for_inputs(timeout=5)
+        assert in_.wait_for_inputs(timeout=HANG)
         words = "prop set /out (sched ((policy 1) (priority 5)))"
         assert admin(names, "/in", words) == [Vocab("ok")]
         thread = in_.inputs[0]._link.thread
@@ -199,7 +199,7 @@ def test_scheduling_of_an_input_is_its_threads(names: LocalNames) -> None:
             Vocab("ok")
         ]
         out.write([1])
-        assert in_.read(timeout=5).value == [1]
+        assert in_.read(timeout=HANG).value == [1]
 
 
 def test_user_properties(names: LocalNames) -> None:

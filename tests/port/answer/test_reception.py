@@ -14,7 +14,7 @@ from pathlib import Path
 
 import pytest
 from support.lasted import lasted
-from support.wait import wait_until
+from support.wait import HANG, wait_until
 
 from yarpy import network
 from yarpy.carriers.base import Carrier
@@ -117,7 +117,7 @@ def test_garbage_first_then_a_good_connection(
                 assert lines.readline() == b"* Error. Protocol not found.\r\n"
         with socket.create_connection(("127.0.0.1", in_.contact.port)) as sock:
             sock.sendall(b"CONNECT test\r\nd\r\nhello 1\r\n")
-            assert in_.read(timeout=5).value == ["hello", 1]
+            assert in_.read(timeout=HANG).value == ["hello", 1]
         wait_until(lambda: "refused" in caplog.text)
     (line,) = [r for r in caplog.records if r.levelno >= logging.WARNING]
     assert "refused" in line.getMessage()
@@ -150,7 +150,7 @@ def test_ports_and_tools_with_the_same_key_find_each_other(key: Path) -> None:
     with NameServer(), Port("/in") as in_, Port("/out") as out:
         out.connect("/in")
         out.write([1])
-        assert in_.read(timeout=5).value == [1]
+        assert in_.read(timeout=HANG).value == [1]
         assert network.exists("/in")
         assert network.is_connected("/out", "/in")
         assert network.ping("/in")[0].startswith("This is /in at ")

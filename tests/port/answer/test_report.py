@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from support.system import NO_MARKS, NO_SCHEDULING
-from support.wait import wait_until
+from support.wait import HANG, wait_until
 
 import yarpy
 from yarpy import registry
@@ -32,7 +32,7 @@ def test_every_connection_with_a_port_and_no_visitor() -> None:
             out.connect("/in", "tcp+recv.level")
             for number in range(3):
                 out.write([number])
-                in_.read(timeout=5)
+                in_.read(timeout=HANG)
             if not NO_MARKS:
                 out.outputs[0].qos = yarpy.Qos(packets="HIGH")
             wait_until(lambda: in_.inputs[0].stats.messages == 3)

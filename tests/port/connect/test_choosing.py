@@ -12,7 +12,7 @@ import numpy as np
 import pytest
 from support import fork_server
 from support.process import Process
-from support.wait import wait_until
+from support.wait import HANG, wait_until
 
 import yarpy
 from yarpy.contact import Contact
@@ -154,7 +154,7 @@ def test_persistent_connections(server: yarpy.NameServer) -> None:
 
     ask_server(None, ["subscribe", "/out", "/in"])
     with yarpy.Port("/out") as out, reader("/in") as process:
-        assert out.wait_for_outputs(timeout=10)
+        assert out.wait_for_outputs(timeout=HANG)
         assert out.outputs[0].carrier == "memory"
         out.write(picture(1))
         process.wait_line("^memory 1 False$")

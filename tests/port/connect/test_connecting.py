@@ -7,7 +7,7 @@ import threading
 
 import pytest
 from support.system import NO_UNIX_SOCKETS
-from support.wait import wait_until
+from support.wait import HANG, wait_until
 
 import yarpy
 from yarpy.errors import (
@@ -127,7 +127,7 @@ def test_what_stands_in_parentheses_is_the_parameter_of_a_monitor(names: LocalNa
         out.connect("/in", carrier)
         assert [link.carrier for link in out.outputs] == [carrier]
         assert out.write([1]) == 1
-        assert in_.read(timeout=5).value == [1]
+        assert in_.read(timeout=HANG).value == [1]
 
 
 def test_what_is_fetched_is_an_input_at_once_or_refused(names: LocalNames) -> None:
@@ -153,7 +153,7 @@ def test_nothing_is_lost_after_connecting(carrier: str, names: LocalNames) -> No
         for turn in range(6):
             out.connect("/in", carrier)
             out.write([turn])
-            assert in_.read(timeout=5).value == [turn]
+            assert in_.read(timeout=HANG).value == [turn]
 
 
 def test_port_that_waits_for_its_reader_is_not_connected_to_itself(names: LocalNames) -> None:
@@ -172,7 +172,7 @@ def test_other_ports_may_be_connected_to_themselves(names: LocalNames) -> None:
         both.connect("/both")
         for number in range(600):
             assert both.write([number]) == 1
-        assert [both.read(timeout=5).value[0] for _ in range(600)] == [*range(600)]
+        assert [both.read(timeout=HANG).value[0] for _ in range(600)] == [*range(600)]
 
 
 @pytest.mark.skipif(bool(NO_UNIX_SOCKETS), reason=NO_UNIX_SOCKETS)

@@ -8,7 +8,7 @@ from contextlib import contextmanager
 
 import pytest
 from support.cut import ALL_SEEN, cut_at
-from support.wait import inside, wait_until
+from support.wait import HANG, inside, wait_until
 
 import yarpy
 from yarpy.port.connect import connecting, reconnect
@@ -37,7 +37,7 @@ def test_the_second_waits_or_leaves_it_alone() -> None:
 
         looking = threading.Thread(target=look)
         looking.start()
-        looking.join(5)
+        looking.join(HANG)
         assert seen == [False]
         with dialling.alone("/c", wait=False) as other:
             assert other
@@ -45,7 +45,7 @@ def test_the_second_waits_or_leaves_it_alone() -> None:
         thread.start()
         time.sleep(0.02)
         order.append("first")
-    thread.join(5)
+    thread.join(HANG)
     assert order == ["first", "second"]
 
 
@@ -70,7 +70,7 @@ def test_an_attempt_for_which_there_is_no_thread_is_made_later(
         assert not attempts.begin("/a", done.set)
     assert attempts.under_way == 0
     assert attempts.begin("/a", done.set), "the target is free again"
-    assert done.wait(10)
+    assert done.wait(HANG)
 
 
 def test_one_attempt_at_each_target_and_a_limited_number_in_all() -> None:
@@ -78,7 +78,7 @@ def test_one_attempt_at_each_target_and_a_limited_number_in_all() -> None:
     go_on, done = threading.Event(), []
 
     def attempt() -> None:
-        assert go_on.wait(10)
+        assert go_on.wait(HANG)
         done.append(threading.current_thread().name)
 
     assert attempts.begin("/a", attempt)
@@ -112,7 +112,7 @@ class Slow:
     def __call__(self, hub: Hub, *arguments: object) -> object:
         if threading.current_thread().name == "yarpy dial /in" and not self.inside.is_set():
             self.inside.set()
-            assert self.go_on.wait(10)
+            assert self.go_on.wait(HANG)
         return self._real(hub, *arguments)  # type: ignore[arg-type]
 
 
@@ -124,7 +124,7 @@ def broken(monkeypatch: pytest.MonkeyPatch) -> Iterator[tuple[yarpy.Port, Slow]]
     with yarpy.NameServer(), yarpy.Port("/out") as out, yarpy.BufferedPort("/in", strict=True):
         out.connect("/in")
         out._hub.outputs.links[0].driver.transport.interrupt()
-        assert slow.inside.wait(10)
+        assert slow.inside.wait(HANG)
         try:
             yield out, slow
         finally:
@@ -174,6 +174,6 @@ def test_a_signal_handler_that_raises_anywhere_gives_the_target_back(nested: boo
 
         thread = threading.Thread(target=look)
         thread.start()
-        thread.join(20)
+        thread.join(HANG)
         assert seen == [True], number
     assert number > 3 or not ALL_SEEN

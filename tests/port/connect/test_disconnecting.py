@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import socket
 
-from support.wait import wait_until
+from support.wait import HANG, wait_until
 
 from yarpy.nameserver.local import LocalNames
 from yarpy.port.connect import disconnecting
@@ -15,7 +15,7 @@ def test_connectionless_goodbye_reaches_the_receiver(names: LocalNames) -> None:
     with Port("/out", names=names) as out, Port("/in", names=names) as in_:
         for carrier in ("udp", "mcast"):
             out.connect("/in", carrier)
-            assert in_.wait_for_inputs(timeout=5)
+            assert in_.wait_for_inputs(timeout=HANG)
             assert disconnecting.disconnect_output(out._hub, "/in") == (
                 True,
                 "Removed connection from /out to /in",

@@ -10,7 +10,7 @@ from contextlib import contextmanager
 
 import pytest
 from support.listener import listening
-from support.wait import wait_until
+from support.wait import HANG, wait_until
 
 import yarpy
 from yarpy import BufferedPort, Port, RpcClient, RpcServer
@@ -67,7 +67,7 @@ def test_a_broken_connection_is_not_dialled_to_another_port(
             time.sleep(0.01)
         assert not motor.inputs and motor.poll() is None
         move(names, "/viewer", viewer)
-        assert camera.wait_for_outputs(timeout=10)
+        assert camera.wait_for_outputs(timeout=HANG)
         assert [link.name for link in camera.outputs] == ["/viewer"]
 
 
@@ -129,8 +129,8 @@ def test_an_address_leads_to_the_same_port_again_or_nowhere(names: LocalNames) -
         with BufferedPort("/viewer2", names=names):
             names.unregister("/viewer")
         with BufferedPort("/viewer", names=names, tcp_port=number) as viewer:
-            assert camera.wait_for_outputs(timeout=10)
-            assert viewer.wait_for_inputs(timeout=5)
+            assert camera.wait_for_outputs(timeout=HANG)
+            assert viewer.wait_for_inputs(timeout=HANG)
 
 
 def crash(port: BufferedPort) -> None:
@@ -148,7 +148,7 @@ def test_a_name_given_by_hand_may_lead_anywhere(names: LocalNames) -> None:
         names.register("/alias", "tcp", "127.0.0.1", in_.contact.port)
         out.connect("/alias")
         out.write(["by its alias"])
-        assert in_.read(timeout=5).value == ["by its alias"]
+        assert in_.read(timeout=HANG).value == ["by its alias"]
         before = out._hub.outputs.links
         break_inputs(in_)
         wait_until(

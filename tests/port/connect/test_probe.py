@@ -11,7 +11,7 @@ import pytest
 from support.lasted import lasted
 from support.listener import listening
 from support.port import free_port
-from support.wait import wait_until
+from support.wait import HANG, wait_until
 
 import yarpy
 from yarpy.contact import Contact
@@ -144,7 +144,7 @@ def test_input_is_dropped_on_request(names: LocalNames) -> None:
     with Port("/it", names=names) as port:
         sock = socket.create_connection(("127.0.0.1", port.contact.port))
         sock.sendall(b"CONNECT /there\r\n")
-        assert port.wait_for_inputs(timeout=5)
+        assert port.wait_for_inputs(timeout=HANG)
         probe.drop_input(port.contact, "/there")
         assert port.inputs == []
         probe.drop_input(port.contact, "/there")  # gone already
@@ -193,7 +193,7 @@ def test_endless_description_ends() -> None:
             sock.sendall(b"There is an input connection from x to y using tcp\r\n" * 100)
 
     with impostor(talk) as contact:
-        assert len(probe.describe(contact, timeout=5)) == 10_000
+        assert len(probe.describe(contact, timeout=HANG)) == 10_000
 
 
 # -- a caller ----------------------------------------------------------------------------------
@@ -210,8 +210,8 @@ def test_asks_again_and_again_over_one_connection(names: LocalNames) -> None:
         yarpy.RpcServer("/server", answer, names=names) as server,
         probe.Caller(server.contact) as caller,
     ):
-        first = caller.ask(["add", 1, 2], timeout=5)
-        second = caller.ask(["x"], timeout=5)
+        first = caller.ask(["add", 1, 2], timeout=HANG)
+        second = caller.ask(["x"], timeout=HANG)
         assert first is not None and first.value == ["ok", "add", 1, 2]
         assert second is not None and second.value == ["ok", "x"]
         assert sources == ["anon_rpc", "anon_rpc"]
@@ -223,7 +223,7 @@ def test_has_the_name_it_is_given_and_any_carrier_with_replies(names: LocalNames
         yarpy.RpcServer("/server", lambda message: [message.source], names=names) as server,
         probe.Caller(server.contact, "/me", carrier="text_ack") as caller,
     ):
-        reply = caller.ask(["who"], timeout=5)
+        reply = caller.ask(["who"], timeout=HANG)
         assert reply is not None and reply.value == ["/me"]
 
 
@@ -232,7 +232,7 @@ def test_asks_the_administrative_side(names: LocalNames) -> None:
         yarpy.RpcServer("/server", lambda message: ["data"], names=names) as server,
         probe.Caller(server.contact, admin=True) as caller,
     ):
-        reply = caller.ask([yarpy.Vocab("ver")], timeout=5)
+        reply = caller.ask([yarpy.Vocab("ver")], timeout=HANG)
         assert reply is not None and reply.value == ["ver", 1, 2, 3]
 
 
@@ -241,7 +241,7 @@ def test_closing_ends_the_connection_in_good_order(names: LocalNames) -> None:
     with yarpy.Port("/reader", names=names, callback=lambda message: None) as port:
         port.on_connection(reports.append)
         caller = probe.Caller(port.contact, "/me")
-        assert port.wait_for_inputs(timeout=5)
+        assert port.wait_for_inputs(timeout=HANG)
         caller.close()
         wait_until(lambda: len(reports) == 2)
         assert (reports[-1].created, reports[-1].reason) == (False, "")
@@ -263,7 +263,7 @@ def test_nobody_to_call() -> None:
 def test_a_port_that_goes_away_is_an_error_of_ours(names: LocalNames) -> None:
     server = yarpy.RpcServer("/server", lambda message: ["ok"], names=names)
     caller = probe.Caller(server.contact)
-    assert caller.ask([1], timeout=5) is not None
+    assert caller.ask([1], timeout=HANG) is not None
     server.close()
     with pytest.raises(yarpy.LinkClosed):
-        caller.ask([2], timeout=5)
+        caller.ask([2], timeout=HANG)

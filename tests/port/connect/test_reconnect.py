@@ -504,7 +504,7 @@ def test_a_signal_handler_closes_a_port_over_a_frame_that_changes_the_lists(
 
     thread = threading.Thread(target=handle, daemon=True)
     thread.start()
-    thread.join(10)
+    thread.join(HANG)
     assert not thread.is_alive()
     assert names.query("/beneath") is None
 

@@ -27,7 +27,7 @@ def test_a_connection_that_breaks_has_them_again(carrier: str) -> None:
         yarpy.BufferedPort("/in", names=names) as in_,
     ):
         out.connect("/in", carrier)
-        assert in_.wait_for_inputs(timeout=5)
+        assert in_.wait_for_inputs(timeout=HANG)
         out.outputs[0].qos = Qos(packets=HIGH, deadline=5, late="drop")
         in_.inputs[0].qos = Qos(packets=LOW, rate=50)
         before = out._hub.outputs.links[0]

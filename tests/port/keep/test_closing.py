@@ -4,6 +4,7 @@ import math
 import threading
 
 import pytest
+from support.wait import HANG
 
 from yarpy import scope
 from yarpy.errors import LinkClosed
@@ -45,7 +46,7 @@ def test_an_error_leaves_out_nothing(caplog):
     )
     thread = threading.Thread(target=end.run, args=(1.0,))
     thread.start()
-    thread.join(10)
+    thread.join(HANG)
     assert done == [1]
     assert end.done
     assert "a defect while closing" in caplog.text

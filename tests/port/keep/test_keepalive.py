@@ -9,7 +9,7 @@ from collections.abc import Iterator
 
 import pytest
 from support.process import Process
-from support.wait import wait_until
+from support.wait import HANG, wait_until
 
 import yarpy
 from yarpy.errors import LinkClosed
@@ -35,7 +35,7 @@ with yarpy.BufferedPort("/keepalive/other", callback=show) as port:
 def start(server: yarpy.NameServer) -> Process:
     """A program with a port that writes and prints what it reads."""
     process = Process([sys.executable, "-c", OTHER], env={**os.environ, **server.environment})
-    process.wait_line("ready", timeout=20)
+    process.wait_line("ready", timeout=HANG)
     return process
 
 
@@ -45,12 +45,12 @@ def test_a_killed_sender_is_asked_again_when_it_is_back(carrier: str) -> None:
         other = start(server)
         reader.listen_to("/keepalive/other", carrier)
         for _ in range(2):
-            assert reader.read(timeout=10).value[0] >= 0
+            assert reader.read(timeout=HANG).value[0] >= 0
             other.kill()
             other = start(server)
             while reader.poll() is not None:  # from before
                 pass
-        assert reader.read(timeout=10).value[0] >= 0
+        assert reader.read(timeout=HANG).value[0] >= 0
         assert [link.carrier for link in reader.inputs] == [carrier]
         other.stop()
 
@@ -103,21 +103,21 @@ def judge(monkeypatch: pytest.MonkeyPatch) -> Iterator[Judge]:
 def test_silence_is_no_death(carrier: str, names: LocalNames, judge: Judge) -> None:
     with Port("/out", names=names) as out, BufferedPort("/in", names=names) as in_:
         out.connect("/in", carrier)
-        assert in_.wait_for_inputs(timeout=5)
+        assert in_.wait_for_inputs(timeout=HANG)
         assert judge(out, in_) == 0
 
 
 def test_connected_by_address_is_connected(names: LocalNames, judge: Judge) -> None:
     with Port("/out", names=names) as out, BufferedPort("/in", names=names) as in_:
         out.connect(f"/{in_.address}", "mcast")
-        assert in_.wait_for_inputs(timeout=5)
+        assert in_.wait_for_inputs(timeout=HANG)
         assert judge(out, in_) == 0
 
 
 def test_a_nameless_sender_is_not_judged(names: LocalNames, judge: Judge) -> None:
     with Port("", names=names) as out, BufferedPort("/in", names=names) as in_:
         out.connect("/in", "udp")
-        assert in_.wait_for_inputs(timeout=5)
+        assert in_.wait_for_inputs(timeout=HANG)
         assert judge(in_) == 0
 
 
@@ -128,7 +128,7 @@ def test_lease_of_a_sender_whom_nobody_can_ask(
     """A greeting costs its sender nothing: a name that nobody knows must not cost us for ever."""
     with Port("", names=names) as out, BufferedPort("/in", names=names) as in_:
         out.connect("/in", carrier)
-        assert in_.wait_for_inputs(timeout=5)
+        assert in_.wait_for_inputs(timeout=HANG)
         [link] = out._hub.outputs.links
         monkeypatch.setattr(keepalive, "LEASE", 1e-9)
         for count in range(5):
@@ -148,10 +148,10 @@ def test_sender_who_can_be_asked_needs_no_traffic(
     monkeypatch.setattr(keepalive, "LEASE", 1e-9)
     with Port("/out", names=names) as out, BufferedPort("/in", names=names) as in_:
         out.connect("/in", "udp")
-        assert in_.wait_for_inputs(timeout=5)
+        assert in_.wait_for_inputs(timeout=HANG)
         assert judge(in_) == 0
         out.write(["still here"])
-        assert in_.read(timeout=5).value == ["still here"]
+        assert in_.read(timeout=HANG).value == ["still here"]
 
 
 @pytest.mark.parametrize("carrier", ["udp", "mcast"])
@@ -160,7 +160,7 @@ def test_who_does_not_know_us_any_more_is_dead(
 ) -> None:
     with Port("/out", names=names) as out, BufferedPort("/in", names=names) as in_:
         out.connect("/in", carrier)
-        assert in_.wait_for_inputs(timeout=5)
+        assert in_.wait_for_inputs(timeout=HANG)
         outputs, out._hub.outputs.links = (
             out._hub.outputs.links,
             (),
@@ -173,7 +173,7 @@ def test_who_does_not_know_us_any_more_is_dead(
 def test_who_sends_needs_no_question(names: LocalNames, judge: Judge) -> None:
     with Port("/out", names=names) as out, BufferedPort("/in", names=names) as in_:
         out.connect("/in", "udp")
-        assert in_.wait_for_inputs(timeout=5)
+        assert in_.wait_for_inputs(timeout=HANG)
         outputs, out._hub.outputs.links = out._hub.outputs.links, ()
         [link] = outputs
         for count in range(5):
@@ -190,7 +190,7 @@ def test_a_receiver_that_does_not_acknowledge_is_asked_what_came(
 ) -> None:
     with Port("/out", names=names) as out, BufferedPort("/in", names=names) as in_:
         out.connect("/in", carrier)
-        assert in_.wait_for_inputs(timeout=5)
+        assert in_.wait_for_inputs(timeout=HANG)
         for count in range(10):
             out.write([count])
         wait_until(lambda: in_.inputs[0].stats.messages == 10)
@@ -206,7 +206,7 @@ def test_a_receiver_that_does_not_acknowledge_is_asked_what_came(
 def test_datagrams_that_did_not_come_are_drops(names: LocalNames, judge: Judge) -> None:
     with Port("/out", names=names) as out, BufferedPort("/in", names=names) as in_:
         out.connect("/in", "udp")
-        assert in_.wait_for_inputs(timeout=5)
+        assert in_.wait_for_inputs(timeout=HANG)
         [link] = out._hub.outputs.links
         link.send(Packet([0]))
         wait_until(lambda: in_.inputs[0].stats.messages == 1)
@@ -234,7 +234,7 @@ def test_the_end_of_the_other_program_is_noticed_at_once(
     with yarpy.NameServer() as server, yarpy.BufferedPort("/keepalive/in") as reader:
         other = start(server)
         reader.listen_to("/keepalive/other", carrier)
-        assert reader.read(timeout=10)
+        assert reader.read(timeout=HANG)
         assert judge(reader) == 0
         time.sleep(0.1)
         monkeypatch.setattr(keepalive, "SOON", 60.0)  # no question is due for long
@@ -247,7 +247,7 @@ def test_the_end_of_the_other_program_is_noticed_at_once(
 def test_silent_connections_end_with_what_they_watch(names: LocalNames, judge: Judge) -> None:
     with Port("/out", names=names) as out, BufferedPort("/in", names=names) as in_:
         out.connect("/in", "mcast")
-        assert in_.wait_for_inputs(timeout=5)
+        assert in_.wait_for_inputs(timeout=HANG)
         assert judge(out) == 0
         [sign] = judge.keepalive._signs.values()
         line = sign.line
@@ -265,7 +265,7 @@ def test_a_host_that_cannot_be_reached_may_come_back(
 
     with Port("/out", names=names) as out, BufferedPort("/in", names=names) as in_:
         out.connect("/in", "mcast")
-        assert in_.wait_for_inputs(timeout=5)
+        assert in_.wait_for_inputs(timeout=HANG)
         monkeypatch.setattr(keepalive.probe, "connection", connection)
         assert judge(out) == 0
         monkeypatch.setattr(keepalive, "GONE", 0.0)

@@ -158,7 +158,7 @@ def test_number_that_somebody_took_meanwhile() -> None:
             assert known.port == port.contact.port
             out.connect("/here")
             out.write([1])
-            assert port.read(timeout=5).value == [1]
+            assert port.read(timeout=HANG).value == [1]
 
 
 def test_name_server_that_has_no_numbers_left() -> None:
@@ -174,7 +174,7 @@ def test_name_server_that_has_no_numbers_left() -> None:
         ):
             out.connect("/third")
             out.write([1])
-            assert third.read(timeout=5).value == [1]
+            assert third.read(timeout=HANG).value == [1]
         assert server.client.query("/first") == first.contact
 
 
@@ -196,14 +196,14 @@ def test_multicast_connections_share_a_group_and_one_sends(names: LocalNames) ->
         out.connect("/a", "mcast")
         out.connect("/b", "mcast")
         # Nothing in the protocol tells the sender when a receiver has joined.
-        assert first.wait_for_inputs(timeout=5)
-        assert second.wait_for_inputs(timeout=5)
+        assert first.wait_for_inputs(timeout=HANG)
+        assert second.wait_for_inputs(timeout=HANG)
         assert [link.active for link in out._hub.outputs.links] == [True, False]
         assert out.write([1]) == 1
-        assert first.read(timeout=5).value == second.read(timeout=5).value == [1]
+        assert first.read(timeout=HANG).value == second.read(timeout=HANG).value == [1]
         out.disconnect("/a")  # another one is elected
         assert out.write([2]) == 1
-        assert second.read(timeout=5).value == [2]
+        assert second.read(timeout=HANG).value == [2]
         wait_until(lambda: not first.inputs)
 
 
@@ -217,9 +217,9 @@ def test_group_comes_from_the_name_server_and_goes_back() -> None:
             assert contact is not None
             assert contact.carrier == "mcast"
             assert contact.host.startswith("224.")
-            assert in_.wait_for_inputs(timeout=5)
+            assert in_.wait_for_inputs(timeout=HANG)
             out.write([1])
-            assert in_.read(timeout=5).value == [1]
+            assert in_.read(timeout=HANG).value == [1]
         assert server.client.query(owned[0]) is None
 
 
@@ -301,7 +301,7 @@ def test_port_can_be_asked_before_it_knows_that_it_is_registered(
 
     names.while_registering = ask
     with Port("/here", names=names):
-        asking[0].join(10)
+        asking[0].join(HANG)
         assert found == [True]
     assert "defect" not in caplog.text
 

@@ -33,7 +33,7 @@ class Client(yarpy.YarpNameClient):
     def connect(self) -> socket.socket:
         self.dialled += 1
         if not self.there:
-            self.hangs.wait(10)
+            self.hangs.wait(HANG)
             raise yarpy.NoNameServer("away")
         ours, theirs = socket.socketpair()
         self.other_ends.append(theirs)

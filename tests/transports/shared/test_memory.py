@@ -12,6 +12,7 @@ from collections.abc import Callable, Iterator
 import pytest
 from support import held
 from support.system import NO_ROOT
+from support.wait import HANG
 
 from yarpy.errors import LocalProtocolError, RemoteProtocolError
 from yarpy.transports.shared import memory
@@ -329,7 +330,7 @@ def test_another_user_who_comes_first_gets_nothing() -> None:
     assert os.read(read, 10) == b"0"
     reading = open_memory(True, sending.port, "")
     assert reading is not None
-    ready.join(5)
+    ready.join(HANG)
     reading.ready()
     for one in (sending, reading):
         one.close()

@@ -15,7 +15,7 @@ from pathlib import Path
 
 import pytest
 from support.lasted import lasted
-from support.wait import wait_until
+from support.wait import HANG, wait_until
 
 from yarpy.errors import LocalProtocolError, RemoteProtocolError
 from yarpy.transports.shared import shmem
@@ -52,7 +52,7 @@ def meet() -> tuple[ShmemTransport, ShmemTransport]:
     thread = threading.Thread(target=listening.ready)
     thread.start()
     dialling.ready()
-    thread.join(10)
+    thread.join(HANG)
     return listening, dialling
 
 
@@ -103,7 +103,7 @@ def test_a_reader_is_interrupted(pair: tuple[ShmemTransport, ShmemTransport]) ->
     thread = threading.Thread(target=lambda: came.append(pair[0].recv_into(room)))
     thread.start()
     pair[0].interrupt()
-    thread.join(20)
+    thread.join(HANG)
     assert came == [0]
     with pytest.raises(OSError):
         pair[0].send([b"x"])
@@ -136,7 +136,7 @@ def test_a_writer_waits_for_its_reader(pair: tuple[ShmemTransport, ShmemTranspor
         assert dialling.taken(total, 0) is not None
         assert dialling._out.filled <= AHEAD
         counted += listening.recv_into(room)
-    thread.join(10)
+    thread.join(HANG)
     assert dialling.taken(total, 0) == (total, False)
 
 
@@ -219,7 +219,7 @@ def test_a_mutex_that_shrinks_ends_the_connection() -> None:
     thread = threading.Thread(target=listening.ready)
     thread.start()
     dialling.ready()
-    thread.join(10)
+    thread.join(HANG)
     dialling.send([b"abc"])
     os.truncate(kept, 0)
     os.close(kept)

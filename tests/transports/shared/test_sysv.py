@@ -10,7 +10,7 @@ from pathlib import Path
 
 import pytest
 from support.system import NO_ROOT
-from support.wait import wait_until
+from support.wait import HANG, wait_until
 
 from yarpy.errors import LocalProtocolError
 from yarpy.transports.shared import sysv
@@ -196,7 +196,7 @@ def test_a_file_that_becomes_shorter_is_an_error(tmp_path: Path) -> None:
     for action in (mutex.try_acquire, mutex.release, mutex.hold, lambda: mutex.held):
         with pytest.raises(OSError, match="was changed"):
             action()
-    mutex.wait(5.0)  # the system says no: at once
+    mutex.wait(HANG)  # the system says no: at once
     mutex.wake()
 
 

@@ -6,7 +6,7 @@ import threading
 import time
 
 import pytest
-from support.wait import wait_until
+from support.wait import HANG, wait_until
 
 import yarpy
 
@@ -26,7 +26,7 @@ def late(names):
         yarpy.BufferedPort("/autoqos/in", names=names) as in_,
     ):
         out.connect("/autoqos/in", "tcp")
-        in_.wait_for_inputs(timeout=10)
+        in_.wait_for_inputs(timeout=HANG)
 
         def write():
             while not going.wait(0.005):
@@ -38,7 +38,7 @@ def late(names):
         thread.start()
         yield out
         going.set()
-        thread.join(10)
+        thread.join(HANG)
 
 
 def test_each_step_is_a_line_and_an_interrupt_undoes_them(cli, late, tmp_path):

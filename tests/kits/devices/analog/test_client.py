@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import pytest
+from support.wait import HANG
 
 import yarpy
 from yarpy.errors import LocalProtocolError
@@ -21,7 +22,7 @@ def test_values_and_calibration(names: LocalNames) -> None:
     device = Still(2)
     with (
         AnalogSensorServer("/force", device, 0.01, names=names),
-        AnalogSensor("/force", timeout=10.0, names=names) as sensor,
+        AnalogSensor("/force", timeout=HANG, names=names) as sensor,
     ):
         assert sensor.channels() == [3.0, 4.0]
         assert sensor.timestamp() > 1e9
@@ -39,9 +40,9 @@ def test_values_and_calibration(names: LocalNames) -> None:
 def test_it_is_served_again(names: LocalNames) -> None:
     with (
         AnalogSensorServer("/force", Still(2), 0.01, names=names),
-        AnalogSensor("/force", timeout=10.0, names=names) as sensor,
+        AnalogSensor("/force", timeout=HANG, names=names) as sensor,
         AnalogSensorServer("/again", sensor, 0.01, names=names),
-        AnalogSensor("/again", timeout=10.0, names=names) as far,
+        AnalogSensor("/again", timeout=HANG, names=names) as far,
     ):
         assert far.channels() == [3.0, 4.0]
 

@@ -3,7 +3,7 @@
 import math
 
 import pytest
-from support.wait import wait_until
+from support.wait import HANG, wait_until
 
 from yarpy.errors import LocalProtocolError, YarpError
 from yarpy.kits.devices import CartesianController, CartesianServer, SimulatedArm
@@ -13,7 +13,7 @@ from yarpy.kits.devices import CartesianController, CartesianServer, SimulatedAr
 def arm(names):
     with (
         CartesianServer("/robot/arm", SimulatedArm(), 0.01, names=names),
-        CartesianController("/robot/arm", timeout=20.0, names=names) as client,
+        CartesianController("/robot/arm", timeout=HANG, names=names) as client,
     ):
         yield client
 

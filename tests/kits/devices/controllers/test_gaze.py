@@ -1,7 +1,7 @@
 """GazeController against a GazeServer with a SimulatedHead."""
 
 import pytest
-from support.wait import wait_until
+from support.wait import HANG, wait_until
 
 from yarpy.data.bottle import Bottle
 from yarpy.errors import LocalProtocolError
@@ -12,7 +12,7 @@ from yarpy.kits.devices import GazeController, GazeServer, SimulatedHead
 def gaze(names):
     with (
         GazeServer("/gaze", SimulatedHead(), 0.01, names=names),
-        GazeController("/gaze", timeout=20.0, names=names) as client,
+        GazeController("/gaze", timeout=HANG, names=names) as client,
     ):
         client.neck_time = 0.02
         yield client

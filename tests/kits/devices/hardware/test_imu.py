@@ -49,7 +49,7 @@ def unit(*packets: bytes) -> Iterator[tuple[str, list[bytes]]]:
         yield os.ttyname(slave), said
     finally:
         over.set()
-        thread.join(10)
+        thread.join(HANG)
         os.close(slave)
         os.close(master)
 

@@ -12,7 +12,7 @@ if sys.platform == "win32":
     pytest.skip("there are no pseudo terminals", allow_module_level=True)
 
 from support.servo_bus import ServoBus
-from support.wait import wait_until
+from support.wait import HANG, wait_until
 
 from yarpy import Property, Timeout
 from yarpy.kits.devices import ControlBoard, ControlBoardServer
@@ -117,7 +117,7 @@ def test_on_ports(both: tuple[Kind, ServoBus, ServoBoard], names: LocalNames) ->
     kind, bus, board = both
     with (
         ControlBoardServer("/arm", board, names=names),
-        ControlBoard("/arm", timeout=10.0, names=names) as arm,
+        ControlBoard("/arm", timeout=HANG, names=names) as arm,
     ):
         assert [*arm.axis_names] == ["lift", "pan"]
         arm.switch_control_modes("pan", "pos")

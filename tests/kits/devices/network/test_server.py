@@ -1,7 +1,7 @@
 """A device behind an interface's server, asked as programs of C++ ask."""
 
 import pytest
-from support.wait import wait_until
+from support.wait import HANG, wait_until
 
 import yarpy
 from yarpy.data.bottle import Bottle
@@ -86,7 +86,7 @@ def test_what_a_port_sends(names: LocalNames) -> None:
         yarpy.BufferedPort("/in", names=names) as port,
     ):
         port.listen_to("/base/odometry:o")
-        message = port.read(timeout=10.0)
+        message = port.read(timeout=HANG)
         assert message.as_(Odometry) == Odometry(1.0, 2.0, 3.0) and message.stamp is not None
 
 

@@ -9,7 +9,7 @@ from typing import Any
 
 import pytest
 from support.lasted import lasted
-from support.wait import wait_until
+from support.wait import HANG, wait_until
 
 import yarpy
 from yarpy import Bottle
@@ -168,7 +168,7 @@ class Cpp:
         self.asked.append(word)
         if word == "cmd":
             self.running.add(request.find("as"))
-            self.slow.wait(5)
+            self.slow.wait(HANG)
             return [7, "STARTED\n"]
         if word == "ps":
             return [

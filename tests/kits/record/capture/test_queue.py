@@ -5,6 +5,7 @@ import time
 
 import pytest
 from support.recordings import payload_of
+from support.wait import HANG
 
 from yarpy.kits.record.capture.queue import OVERHEAD, MessageQueue, own
 from yarpy.wire.message import DATA, Message
@@ -123,7 +124,7 @@ def test_waiting_ends_when_much_has_come() -> None:
     thread = threading.Thread(target=queue.wait, args=(30,))
     thread.start()
     queue.put(message("x" * 1000))
-    thread.join(20)
+    thread.join(HANG)
     assert not thread.is_alive()
 
 

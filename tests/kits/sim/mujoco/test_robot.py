@@ -1,6 +1,7 @@
 """A MuJoCo model as the parts of a robot, on ports."""
 
 import pytest
+from support.wait import HANG
 
 import yarpy
 from yarpy.errors import UnknownPlugin
@@ -77,10 +78,10 @@ def test_what_moves_freely_is_on_ports(rover):
     name, parts = mujoco_robot(rover, (80, 60))
     with (
         Robot(name, parts, names=names) as robot,
-        Laser("/rover/laser_front", timeout=10.0, names=names) as laser,
+        Laser("/rover/laser_front", timeout=HANG, names=names) as laser,
         Odometry2D.connect("/rover/odometry", names=names) as odometry,
         Localization2D.connect("/rover/localization", names=names) as localization,
-        MultiSensor("/rover/inertial", timeout=10.0, names=names) as sensors,
+        MultiSensor("/rover/inertial", timeout=HANG, names=names) as sensors,
     ):
         assert {"/rover/laser_front", "/rover/odometry", "/rover/localization"} <= {*robot.ports}
         assert laser.scan().ranges[0] == pytest.approx(2.0, abs=0.2)

@@ -3,6 +3,7 @@
 import threading
 
 import pytest
+from support.wait import HANG
 
 from yarpy.peers.ros2.name import Node
 from yarpy.peers.ros2.token import Token
@@ -49,7 +50,7 @@ def test_waiting() -> None:
     assert found.wait("/goal", "MS", timeout=0.01) == []
     timer = threading.Timer(0.05, found.take, (HEARS, True))
     timer.start()
-    assert [str(token) for token in found.wait("/goal", "MS", timeout=20.0)] == [HEARS]
+    assert [str(token) for token in found.wait("/goal", "MS", timeout=HANG)] == [HEARS]
     timer.join()
 
 
