@@ -27,7 +27,7 @@ demo: $(VENV)/.base
 
 # What needs no foreign program, the same wherever it runs; `peers` is the rest. Most tests wait for
 # something, so there are more workers than processors.
-WORKERS ?= 4
+WORKERS ?= 6
 PYTEST = $(BIN)/python tests/support/warm.py $(STAGE) && $(BIN)/python -m pytest -n $(WORKERS) --dist worksteal
 test: $(VENV)/.ready
 	$(PYTEST) -m "not peer"
