@@ -26,6 +26,7 @@ from yarpy.data.bottle import Bottle, Property
 from yarpy.data.text import plain_text
 from yarpy.errors import MissingFile
 from yarpy.log import logger
+from yarpy.platform.refusal import reason
 
 log = logger("yarpy.resource")
 
@@ -144,6 +145,6 @@ class ResourceFinder:
             return read_ini(path, self._search.environment, given, find)
         except OSError as error:
             if asked:
-                raise MissingFile(f"cannot read {path} (--from): {error.strerror}") from error
-            log.warning("cannot read %s: %s", path, error.strerror)
+                raise MissingFile(f"cannot read {path} (--from): {reason(error)}") from error
+            log.warning("cannot read %s: %s", path, reason(error))
             return Property()

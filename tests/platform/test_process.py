@@ -30,6 +30,12 @@ def other() -> Iterator[subprocess.Popen[str]]:
         child.kill()
 
 
+@pytest.mark.skipif(sys.platform == "darwin", reason="macOS says it by ps alone")
+def test_the_program_of_a_process(other: subprocess.Popen[str]) -> None:
+    assert "python" in process.program(other.pid)
+    assert process.program(0) == ""
+
+
 def test_one_lives_until_it_ends_and_asking_does_nothing_to_it(
     other: subprocess.Popen[str],
 ) -> None:

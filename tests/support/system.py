@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import ctypes
 import os
 import socket
 import sys
@@ -29,6 +30,13 @@ NO_TAKEN: Final = "" if sys.platform == "linux" else "only Linux tells how much 
 NO_LINKS: Final = "" if sys.platform != "win32" else "on Windows it takes a right to make a link"
 NO_UNLINK: Final = (
     "" if sys.platform != "win32" else "Windows lets nobody delete a file that a program has open"
+)
+NO_OWNERS: Final = (
+    "under wine sockets are its server's, and it says of nobody who listens"
+    if sys.platform == "win32" and hasattr(ctypes.WinDLL("ntdll"), "wine_get_version")
+    else "macOS says who listens to nobody but root"
+    if sys.platform == "darwin"
+    else ""
 )
 NO_GROUPS: Final = (
     ""

@@ -7,6 +7,7 @@ from typing import Final
 import click
 
 from yarpy.log import readable
+from yarpy.platform.refusal import reason
 
 _FOR_PROGRAMS: Final = ", or use yarpy.LocalNames() inside one program"  # which is no command's way
 
@@ -20,7 +21,7 @@ def complain(text: str) -> None:
 def complain_of(error: Exception) -> None:
     """The same of an exception; one of the system names its file."""
     if isinstance(error, OSError) and error.strerror:
-        complain(error.strerror + (f": {error.filename}" if error.filename else ""))
+        complain(reason(error) + (f": {error.filename}" if error.filename else ""))
     else:
         complain(str(error))
 

@@ -18,6 +18,7 @@ from yarpy.config.access import FILE, Access, Rule
 from yarpy.config.access_file import parse
 from yarpy.errors import AddressError
 from yarpy.link.begin.admission import KNOWN, RUN, SCRIPT
+from yarpy.platform.refusal import reason
 
 _HEAD: Final = re.compile(r"\s*+\[")
 _END: Final = ". No port opens until this is fixed"
@@ -96,8 +97,8 @@ def _text(where: Path) -> str | None:
     except (FileNotFoundError, NotADirectoryError):
         return None
     except (OSError, UnicodeDecodeError) as error:
-        reason = error.strerror if isinstance(error, OSError) else error
-        raise AddressError(f"{where} cannot be read: {reason}") from error
+        why = reason(error) if isinstance(error, OSError) else error
+        raise AddressError(f"{where} cannot be read: {why}") from error
 
 
 def _parsed(text: str, where: Path) -> Access:

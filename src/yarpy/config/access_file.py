@@ -27,6 +27,7 @@ from yarpy.config.access import ALL, FILE, Access, Door, Rule
 from yarpy.errors import AddressError
 from yarpy.link.begin.admission import KNOWN, RIGHTS, Gate
 from yarpy.platform.folders import conf_directory, folder
+from yarpy.platform.refusal import reason
 
 SETTING: Final = "YARPY_ACCESS"
 LEAST: Final = 16  # characters of a token
@@ -233,8 +234,8 @@ class _Reader:
             try:
                 value = file.read_text("utf-8").strip()
             except (OSError, UnicodeDecodeError) as error:
-                reason = error.strerror if isinstance(error, OSError) else error
-                raise self.mistake(line, f"tokens: {file} cannot be read: {reason}") from error
+                why = reason(error) if isinstance(error, OSError) else error
+                raise self.mistake(line, f"tokens: {file} cannot be read: {why}") from error
         if not isinstance(value, str):
             raise self.mistake(line, f'tokens: write {name} = "..." or {name} = {{file = "..."}}')
         if len(value) < LEAST or not _TOKEN.fullmatch(value):

@@ -20,6 +20,7 @@ if sys.platform == "win32":
     _QUERY: Final = 0x1000  # PROCESS_QUERY_LIMITED_INFORMATION
     _DENIED: Final = 5  # ERROR_ACCESS_DENIED
     _RUNS: Final = 259  # STILL_ACTIVE
+    _PATH: Final = 1 << 15  # letters of the longest one
 
     def lives(pid: int) -> bool:
         """Return whether there is a process with that number. `os.kill(pid, 0)` would be Ctrl-C."""
@@ -35,6 +36,22 @@ if sys.platform == "win32":
             return bool(kernel.GetExitCodeProcess(handle, ctypes.byref(code))) and (
                 code.value == _RUNS
             )
+        finally:
+            kernel.CloseHandle(handle)
+
+    def program(pid: int) -> str:
+        """Return the path of the program that a process runs; "" if the system does not say it."""
+        import ctypes
+
+        kernel = ctypes.WinDLL("kernel32")
+        kernel.OpenProcess.restype = ctypes.c_void_p
+        handle = ctypes.c_void_p(kernel.OpenProcess(_QUERY, False, pid))
+        if not handle:
+            return ""
+        try:
+            text, size = ctypes.create_unicode_buffer(_PATH), ctypes.c_ulong(_PATH)
+            told = kernel.QueryFullProcessImageNameW(handle, 0, text, ctypes.byref(size))
+            return text.value if told else ""
         finally:
             kernel.CloseHandle(handle)
 
@@ -72,6 +89,13 @@ else:
         except OSError:
             return True  # somebody else's
         return True
+
+    def program(pid: int) -> str:
+        """Return the path of the program that a process runs; "" if the system does not say it."""
+        try:
+            return os.readlink(f"/proc/{pid}/exe")
+        except OSError:
+            return ""
 
     def signal_group(pid: int, number: int) -> bool:
         """Send a signal to all whom a process leads; return whether there is one. 0 asks only."""

@@ -8,6 +8,7 @@ import yarpy
 from yarpy.config.configuration import Server
 from yarpy.errors import NoNameServer
 from yarpy.kits.doctor.server import find, line_of, said_by
+from yarpy.platform.shell import no_setting, setting
 
 
 def test_who_says_where_the_server_is(tmp_path: Path) -> None:
@@ -17,7 +18,7 @@ def test_who_says_where_the_server_is(tmp_path: Path) -> None:
     case = made_up(directory=tmp_path)
     case.environment = {"YARP_CONFIG_HOME": str(tmp_path)}
     assert said_by(case, server) == (
-        f"{tmp_path}/yarp_namespace.conf, line 1 and {tmp_path}/_lab.conf, line 3"
+        f"{tmp_path / 'yarp_namespace.conf'}, line 1 and {tmp_path / '_lab.conf'}, line 3"
     )
     case.environment["YARP_NAMESPACE"] = "/lab"
     assert said_by(case, server).startswith("YARP_NAMESPACE=/lab and ")
@@ -29,9 +30,9 @@ def test_what_overrides_the_files_is_named(tmp_path: Path) -> None:
     case = made_up(servers=(Server("127.0.0.1", 1),), directory=tmp_path)
     case.problem, case.others = NoNameServer("nobody"), []
     [finding] = find(case)
-    assert "unset YARPY_SERVER" in finding.advice
+    assert no_setting("YARPY_SERVER") in finding.advice
     # A server that would do: a file that names it would not be read.
     with yarpy.NameServer() as server:
         case.others = [Server("127.0.0.1", server.port)]
         [finding] = find(case)
-    assert finding.advice == f"`export YARPY_SERVER=127.0.0.1:{server.port}`"
+    assert finding.advice == f"`{setting('YARPY_SERVER', f'127.0.0.1:{server.port}')}`"

@@ -1,5 +1,6 @@
 """Interfaces: names, includes, and rules that C++ YARP has."""
 
+import sys
 from pathlib import Path
 
 import pytest
@@ -153,7 +154,7 @@ def test_files_that_are_no_text(tmp_path: Path) -> None:
         read_interface(tmp_path / "a.thrift")
     with pytest.raises(FileNotFoundError):
         read_interface(tmp_path / "none.thrift")
-    if Path("/dev/zero").exists():
+    if sys.platform != "win32":  # which has no file without an end
         (tmp_path / "zero.thrift").symlink_to("/dev/zero")
         with pytest.raises(DecodeError, match="has more than 262144 characters"):
             read_interface(tmp_path / "zero.thrift")

@@ -8,7 +8,6 @@ from queue import Queue
 from typing import Any
 
 import pytest
-import zenoh
 from support.wait import HANG, wait_until
 
 import yarpy
@@ -17,6 +16,7 @@ from yarpy.peers.zenoh import endpoint
 from yarpy.peers.zenoh.endpoint import Publisher, Server, Subscriber
 from yarpy.peers.zenoh.transport import share
 
+zenoh = pytest.importorskip("zenoh", reason='Zenoh: pip install "yarpy[zenoh]"')
 pytestmark = pytest.mark.usefixtures("names")
 
 

@@ -11,14 +11,11 @@ each look. Exit codes: 0; 1 no name server.
 
 from __future__ import annotations
 
-import os
 import queue
 import shutil
 import sys
-import threading
 import time
 from collections.abc import Callable, Iterator
-from contextlib import contextmanager
 from typing import TYPE_CHECKING, Final
 
 import click
@@ -95,6 +92,8 @@ def _live(sampler: Sampler, view: View) -> None:
     from rich.console import Console
     from rich.live import Live
 
+    from yarpy.platform.keys import keys
+
     console = Console(highlight=False)
     with keys() as pressed, Live(console=console, auto_refresh=False, screen=True) as live:
         now: list[tuple[Snapshot, float]] = []
@@ -120,42 +119,3 @@ def _live(sampler: Sampler, view: View) -> None:
             if view.over:
                 return
             wait(0.0)
-
-
-@contextmanager
-def keys() -> Iterator[queue.Queue[str]]:
-    """The keys that are pressed, as they are; the terminal is as before afterwards. None come where
-    standard input is no terminal, or the system has none of this."""
-    pressed: queue.Queue[str] = queue.Queue()
-    if sys.platform == "win32":
-        yield pressed
-        return
-    try:
-        import termios
-        import tty
-    except ImportError:  # a Python that was built without
-        yield pressed
-        return
-    if not sys.stdin.isatty():
-        yield pressed
-        return
-    descriptor = sys.stdin.fileno()
-    before = termios.tcgetattr(descriptor)
-
-    def read() -> None:
-        while True:
-            try:
-                data = os.read(descriptor, 64)
-            except OSError:
-                return
-            if not data:
-                return
-            for letter in data.decode("utf-8", "ignore"):
-                pressed.put(letter)
-
-    tty.setcbreak(descriptor)
-    threading.Thread(target=read, name="yarpy keys", daemon=True).start()
-    try:
-        yield pressed
-    finally:
-        termios.tcsetattr(descriptor, termios.TCSADRAIN, before)

@@ -26,6 +26,7 @@ from pathlib import Path
 from typing import Any, Final, Literal, TypeAlias
 
 from yarpy.errors import LocalProtocolError
+from yarpy.platform.refusal import reason
 from yarpy.route import parse_carrier
 
 Kind: TypeAlias = Literal["critical", "best-effort"]
@@ -85,8 +86,8 @@ def load(path: Path) -> Rules:
     try:
         text = path.read_text("utf-8")
     except (OSError, UnicodeDecodeError) as error:
-        reason = error.strerror if isinstance(error, OSError) else error
-        raise LocalProtocolError(f"{path} cannot be read: {reason}") from error
+        why = reason(error) if isinstance(error, OSError) else error
+        raise LocalProtocolError(f"{path} cannot be read: {why}") from error
     return parse(text, str(path))
 
 

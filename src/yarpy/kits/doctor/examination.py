@@ -8,7 +8,6 @@ from __future__ import annotations
 
 import queue
 import re
-import shlex
 import threading
 from collections.abc import Iterable, Iterator
 from dataclasses import replace
@@ -18,6 +17,7 @@ from yarpy import registry
 from yarpy.errors import YarpError
 from yarpy.kits.doctor.case import Case
 from yarpy.kits.doctor.finding import LEVELS, Finding
+from yarpy.platform.shell import quoted
 from yarpy.platform.timed_queue import TimedQueue
 
 TIMEOUT: Final = 10.0  # seconds for a family
@@ -65,7 +65,7 @@ def _of_family(name: str, case: Case, timeout: float) -> list[Finding]:
 def _pasteable(findings: Iterable[Finding], names: Iterable[str]) -> Iterator[Finding]:
     """The findings, with each of the names in their advice as a shell wants it."""
     unsafe = sorted(
-        {name for name in names if name[:1] == "/" and shlex.quote(name) != name},
+        {name for name in names if name[:1] == "/" and quoted(name) != name},
         key=len,
         reverse=True,
     )
@@ -74,7 +74,7 @@ def _pasteable(findings: Iterable[Finding], names: Iterable[str]) -> Iterator[Fi
         return
     any_name = re.compile("|".join(map(re.escape, unsafe)))
     for finding in findings:
-        advice = any_name.sub(lambda found: shlex.quote(found[0]), finding.advice)
+        advice = any_name.sub(lambda found: quoted(found[0]), finding.advice)
         yield replace(finding, advice=advice)
 
 

@@ -15,6 +15,7 @@ from yarpy.kits.doctor.finding import Finding
 from yarpy.limit import number_in
 from yarpy.names.default import secret
 from yarpy.network.traffic import PortState
+from yarpy.platform.process import lives
 from yarpy.port.connect import probe
 from yarpy.port.connect.target import unknown
 
@@ -66,7 +67,7 @@ def _knows(case: Case, name: str) -> Iterator[bool]:
 def _dead(case: Case, state: PortState) -> Finding:
     pids = [pid for pid in map(number_in, case.property_of(state.name, "process")) if pid]
     pid = pids[0] if pids and case.is_here(state.name) else 0
-    if pid and process.state(pid) not in ("", "Z"):
+    if pid and lives(pid) and process.state(pid) != "Z":
         gone = f"its program (process {pid}) lives and does not listen there any more"
     elif pid:
         gone = f"its program (process {pid}) has ended without giving the name back"

@@ -1,6 +1,10 @@
 """Programs of this computer, as the system sees them: who listens, who is stopped, who runs short.
 
-Rules: read from /proc, so elsewhere than on Linux, and for what other users own, nothing is known.
+    Linux           all of it, from /proc, but for what other users own
+    Windows         which process listens, and its program
+    macOS           nothing
+
+Rules: what is not known is nothing, and no error.
 A number that a port gives is that of its own computer (or container): a listener is looked up by
 its socket instead.
 """
@@ -9,12 +13,17 @@ from __future__ import annotations
 
 import os
 import re
+import sys
 from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Final
 
-PROC: Final = Path("/proc")
+from yarpy.platform.listening import listening
+from yarpy.platform.process import program
+
+# wine shows that of Linux, whose numbers mean other processes
+PROC: Final = Path("/proc" if sys.platform != "win32" else r"\\.\none")
 _LISTEN: Final = "0A"
 _OPEN: Final = "01"  # in others the end counts as a byte
 _SOCKET = re.compile(r"socket:\[(\d+)\]")
@@ -52,6 +61,8 @@ def sockets() -> Iterator[Socket]:
                 _port(words[1]), _port(words[2]), words[3], int(unsent, 16), int(unread, 16),
                 int(words[9]),
             )  # fmt: skip
+    for port in listening():
+        yield Socket(port, 0, _LISTEN, 0, 0, 0)
 
 
 def _port(address: str) -> int:
@@ -63,6 +74,8 @@ def listener(port: int) -> int:
     inodes = {one.inode for one in sockets() if one.listens and one.local == port}
     if not inodes:
         return 0
+    if sys.platform == "win32":
+        return listening().get(port, 0)
     for folder in PROC.glob("[0-9]*/fd"):
         try:
             names = os.listdir(folder)
@@ -92,11 +105,11 @@ def state(pid: int) -> str:
 
 
 def command(pid: int) -> str:
-    """Its command line, as far as it is short."""
+    """Its command line, as far as it is short; its program, where the system says no more."""
     try:
         words = (PROC / str(pid) / "cmdline").read_bytes().split(b"\0")
     except OSError:
-        return ""
+        return program(pid)[-60:] if pid else ""
     return " ".join(b" ".join(words).decode("utf-8", "replace").split())[:60]
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import sys
 from collections.abc import Iterator
 from typing import Final
 
@@ -50,7 +51,8 @@ def _silent(state: PortState, pid: int) -> Finding:
         state.name,
         f'"{state.name}" takes connections at {state.contact.address} and says nothing: {who} '
         "hangs, is stopped, or has no time for its ports",
-        f"look at it: `top -p {pid}`, `py-spy dump --pid {pid}`"
+        f"look at it: {'' if sys.platform == 'win32' else f'`top -p {pid}`, '}"
+        f"`py-spy dump --pid {pid}`"
         if pid
         else "look at it on its computer; a program stopped by ^Z goes on with `kill -CONT PID`",
     )

@@ -13,6 +13,7 @@ from yarpy.errors import YarpError
 from yarpy.kits.doctor.case import Case
 from yarpy.kits.doctor.finding import Finding
 from yarpy.platform.folders import conf_directory
+from yarpy.platform.shell import no_setting, setting
 
 
 def find(case: Case) -> Iterator[Finding]:
@@ -62,7 +63,7 @@ def _no_server(case: Case) -> Finding:
         other = others[0]
         verdict += f"; one of {other.namespace} answers at {_place(other)}"
         if used is not None and used.path is None:  # a file would not be read
-            advice = f"`export YARPY_SERVER={_place(other)}`"
+            advice = f"`{setting('YARPY_SERVER', _place(other))}`"
         elif used is None or other.namespace == used.namespace:
             advice = f"`yarpy conf {other.host} {other.port}`"
         else:
@@ -70,7 +71,7 @@ def _no_server(case: Case) -> Finding:
         return Finding("no-server", about, verdict, advice)
     advice = "start one: `yarpy server`, or search for one: `yarpy detect --write`"
     if used is not None and used.path is None:
-        advice += "; or `unset YARPY_SERVER`, which overrides the files"
+        advice += f"; or `{no_setting('YARPY_SERVER')}`, which overrides the files"
     return Finding("no-server", about, verdict, advice)
 
 

@@ -26,6 +26,7 @@ from typing import Any, Final
 from yarpy.errors import LocalProtocolError, MissingFile
 from yarpy.kits.wrap.method import CHANGES, UNDECIDED, Method
 from yarpy.kits.wrap.mode import MODES, Mode
+from yarpy.platform.refusal import reason
 from yarpy.qos import Qos
 
 VARIABLE: Final = "YARPY_WRAP"
@@ -73,7 +74,7 @@ def _read(path: Path) -> Mapping[str, Any]:
     try:
         text = path.read_text(encoding="utf-8")
     except OSError as error:
-        raise MissingFile(f"{path} cannot be read: {error.strerror or error}") from error
+        raise MissingFile(f"{path} cannot be read: {reason(error)}") from error
     if path.suffix in (".yml", ".yaml"):
         try:
             import yaml

@@ -20,6 +20,7 @@ from yarpy.limit import SCRIPT_FILE
 from yarpy.monitors.base import Place
 from yarpy.monitors.script.control import Control
 from yarpy.monitors.script.permission import look_for
+from yarpy.platform.refusal import reason
 from yarpy.wire.message import Message
 
 INTERVAL: Final = 0.5  # seconds between checks of a file
@@ -88,7 +89,7 @@ def read_script(path: Path) -> bytes:
         with open(path, "rb", opener=_opened) as file:
             found = file.read(SCRIPT_FILE + 1)
     except OSError as error:
-        raise LocalProtocolError(f'"{path}" cannot be read: {error.strerror}') from error
+        raise LocalProtocolError(f'"{path}" cannot be read: {reason(error)}') from error
     if len(found) > SCRIPT_FILE:
         raise LocalProtocolError(f'"{path}" is too large for a script: over {SCRIPT_FILE} bytes')
     return found

@@ -72,7 +72,7 @@ def test_a_laser_in_a_map(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> No
     devices.save_grid(grid, path)
     sensor = "(SENSOR (min_angle 0) (max_angle 90) (resolution 90.0))"
     named: Any = plugin.laser(
-        Property.from_text(f'(test use_mapfile) (map_file "{path}") {sensor}')
+        Property.from_text(f'(test use_mapfile) (map_file "{path.as_posix()}") {sensor}')
     )
     named.place = (0.25, 0.25, 0.0)
     assert named.ranges() == [0.25]

@@ -1,9 +1,11 @@
 """`yarpy demo`: everything that it tells to try, and how it ends."""
 
 import json
+import os
 import re
 import signal
 import socket
+import sys
 import urllib.request
 from pathlib import Path
 
@@ -13,6 +15,8 @@ from support.port import free_block, free_port
 from support.process import Process
 from support.ros_graph import ros_graph
 from support.wait import HANG, wait_until
+
+CHECKOUT = Path(__file__).parents[4]
 
 
 @pytest.fixture(scope="module")
@@ -40,13 +44,16 @@ def lines(demo: Process) -> list[str]:
 
 def line(demo: Process, *words: str) -> str:
     [found] = [each for each in lines(demo) if all(word in each for word in words)]
-    return found
+    return found.replace("python -m yarpy", f"{sys.executable} -m yarpy")  # there may be no other
 
 
 def shell(lonely: CommandLine, *commands: str) -> Process:
     """Lines as a person would paste them into a terminal, in the checkout."""
-    where = Path(__file__).parents[4]
-    return Process(["sh", "-c", "\n".join(commands)], env=lonely.environment, cwd=where)
+    if sys.platform == "win32":
+        script = lonely.home / "lines.bat"
+        script.write_text("\n".join(("@echo off", *commands, "")))
+        return Process([os.environ["COMSPEC"], "/c", str(script)], env=lonely.environment)
+    return Process(["sh", "-c", "\n".join(commands)], env=lonely.environment, cwd=CHECKOUT)
 
 
 def run(lonely: CommandLine, *commands: str) -> str:
@@ -104,12 +111,15 @@ def test_camera_in_a_browser(demo: Process):
 
 
 def test_lines_of_yarpy(demo: Process, lonely: CommandLine):
-    setting = line(demo, "export")
+    setting = line(demo, "YARPY_SERVER=")
     assert "registration name /icubSim/cam/right " in run(lonely, setting, line(demo, "name list"))
     assert "Response: [is] encs (" in run(lonely, setting, line(demo, "rpc", "get encs"))
     assert run(lonely, setting, line(demo, "inertial")).startswith("(((")
+    name, _, value = setting.split()[-1].partition("=")
+    environment = {**lonely.environment, name: value}
     for verb in ("view", "scope"):
-        with shell(lonely, setting, "exec " + line(demo, f" {verb} ") + " --no-browser") as process:
+        words = [*line(demo, f" {verb} ").split(), "--no-browser"]
+        with Process(words, env=environment, cwd=CHECKOUT) as process:
             process.wait_line(r"is shown at http://", timeout=HANG)
 
 

@@ -5,6 +5,13 @@ import sys
 
 from yarpy.kits.thrift import load
 
+HERE = "import sys; sys.path.insert(0, '.'); "  # an isolated Python leaves that out
+
+
+def files_of(folder, module):
+    """The line for a module that is written."""
+    return f"{folder / module}.py, {folder / module}.pyi\n"
+
 
 def test_thrift_is_written(here, tmp_path, monkeypatch):
     (tmp_path / "lib").mkdir()
@@ -21,10 +28,11 @@ def test_thrift_is_written(here, tmp_path, monkeypatch):
     assert sorted(path.name for path in tmp_path.iterdir()) == ["arm.thrift", "lib"]
     out = tmp_path / "out"
     said = here(*arguments, "--out", str(out))
-    assert said.out == f"{out}/shape.py, {out}/shape.pyi\n{out}/arm.py, {out}/arm.pyi\n"
+    assert said.out == files_of(out, "shape") + files_of(out, "arm")
     monkeypatch.syspath_prepend(str(out))
+    program = HERE + "import arm; print(arm.shape.Point(3), 'lark' in sys.modules)"
     done = subprocess.run(
-        [sys.executable, "-c", "import arm, sys; print(arm.shape.Point(3), 'lark' in sys.modules)"],
+        [sys.executable, "-c", program],
         cwd=out, capture_output=True, text=True, check=True, timeout=50,
     )  # fmt: skip
     assert done.stdout == "Point(x=3) False\n"
@@ -53,9 +61,9 @@ def test_no_module_that_is_written_hides_one_of_python(here, tmp_path):
     arm.write_text('include "types.thrift"\nservice Arm { types.Point get() }')
     out = tmp_path / "out"
     said = here("idl", "thrift", str(arm), "--out", str(out))
-    assert said.out == f"{out}/types_.py, {out}/types_.pyi\n{out}/arm.py, {out}/arm.pyi\n"
+    assert said.out == files_of(out, "types_") + files_of(out, "arm")
     done = subprocess.run(
-        [sys.executable, "-c", "import arm; print(arm.types.Point(3))"],
+        [sys.executable, "-c", HERE + "import arm; print(arm.types.Point(3))"],
         cwd=out, capture_output=True, text=True, check=True, timeout=50,
     )  # fmt: skip
     assert done.stdout == "Point(x=3)\n"

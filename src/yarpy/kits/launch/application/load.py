@@ -26,6 +26,7 @@ from yarpy.limit import (
     APPLICATION_FILES,
     APPLICATION_PROGRAMS,
 )
+from yarpy.platform.refusal import reason
 from yarpy.route import parse_carrier
 
 _XML = (".xml", ".xml.template")
@@ -143,8 +144,7 @@ def content(path: Path) -> bytes:
         with open(path, "rb") as file:
             return file.read(APPLICATION_FILE + 1)
     except OSError as error:
-        reason = error.strerror or type(error).__name__
-        raise MissingFile(f'"{path}" cannot be read: {reason}') from None
+        raise MissingFile(f'"{path}" cannot be read: {reason(error)}') from None
 
 
 def _identity(path: Path) -> Path:

@@ -21,6 +21,7 @@ from yarpy.limit import (
     ROBOT_ELEMENTS,
     ROBOT_FILES,
 )
+from yarpy.platform.refusal import reason
 
 INCLUDE: Final = "xi:include"
 ALL: Final = "enable_all"  # the tag that enables whatever has to be enabled
@@ -51,8 +52,7 @@ class Merge:
             with open(path, "rb") as file:
                 data = file.read(APPLICATION_FILE + 1)
         except OSError as error:
-            reason = error.strerror or type(error).__name__
-            raise BadFile(Where(str(path)), f"it cannot be read: {reason}") from None
+            raise BadFile(Where(str(path)), f"it cannot be read: {reason(error)}") from None
         return parse(data, str(path))
 
     def _include(self, element: Element, path: Path, stack: Sequence[Path], depth: int) -> None:

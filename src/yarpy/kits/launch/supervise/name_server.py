@@ -14,6 +14,7 @@ from contextlib import contextmanager
 import yarpy
 from yarpy.config.configuration import default_port
 from yarpy.kits.launch.application.application import Application
+from yarpy.platform.shell import setting
 from yarpy.transports.bind import SETTING
 
 
@@ -49,7 +50,7 @@ def _brought() -> Iterator[str]:
             os.environ.update(server.environment)
             yield (
                 f"a name server of its own is at {server.address} until the end; "
-                f"in other terminals: export YARPY_SERVER={server.address}"
+                f"in other terminals: {setting('YARPY_SERVER', server.address)}"
             )
     finally:
         for name, value in before.items():

@@ -1,7 +1,9 @@
 """`yarpy new NAME`: a project that runs at once, with a test that passes.
 
     yarpy new ball_tracker
-    cd ball_tracker && python -m pytest && yarpy up ball_tracker.toml
+    cd ball_tracker
+    python -m pytest
+    yarpy up ball_tracker.toml
 
 Exit codes: 0 it is written; 1 the name is taken, or is none.
 """
@@ -23,5 +25,7 @@ def command(name: str) -> int:
 
     for path in create(name, Path()):
         print_line(str(path))
-    print_line(f"now: cd {name}; python -m pytest; yarpy up {name}.toml")
+    print_line("now:")  # a line each, which every shell takes
+    for line in (f"cd {name}", "python -m pytest", f"yarpy up {name}.toml"):
+        print_line(f"  {line}")
     return 0

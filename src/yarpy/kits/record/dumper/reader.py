@@ -26,6 +26,7 @@ from yarpy.kits.record.mcap.layout import Damaged
 from yarpy.kits.record.mcap.storage import FOREVER
 from yarpy.kits.record.recorded import PortFacts, Recorded
 from yarpy.limit import DUMPED_LINE, RECORDED_TEXT, limits
+from yarpy.platform.refusal import reason
 
 _LINE: Final = re.compile(
     rb"(-?\d{1,10}) (-?\d{1,11})\.(\d{6})(?: (-?\d{1,11})\.(\d{6}))?(?: |$)", re.ASCII
@@ -122,7 +123,7 @@ class Part:
             with os.scandir(folder) as found:
                 self.size = sum(one.stat().st_size for one in found if one.is_file())
         except OSError as error:
-            raise MissingFile(f"{folder / INFO} cannot be read: {error.strerror}") from error
+            raise MissingFile(f"{folder / INFO} cannot be read: {reason(error)}") from error
         lines = text.splitlines()
         words = lines[0].split() if lines else []
         self._type = words[1].rstrip(";") if len(words) > 1 and words[0] == "Type:" else "Bottle"
@@ -154,7 +155,7 @@ class Part:
             with open(self._folder / DATA, "rb") as file:
                 yield from self._lines_of(file)
         except OSError as error:
-            raise MissingFile(f"{self._folder / DATA} cannot be read: {error.strerror}") from error
+            raise MissingFile(f"{self._folder / DATA} cannot be read: {reason(error)}") from error
 
     def _lines_of(self, file: BinaryIO) -> Iterator[tuple[int, bytes]]:
         place = 0

@@ -36,6 +36,7 @@ from yarpy.limit import (
     RECORDED_TEXT,
     limits,
 )
+from yarpy.platform.refusal import reason
 
 TASK: Final = "/task"
 _BATCH: Final = 1024  # rows at a time
@@ -88,7 +89,7 @@ class LeRobotStorage:
             files = [one for one in self.path.rglob("*") if one.is_file()]
             self.size = sum(one.stat().st_size for one in files)
         except OSError as error:
-            raise MissingFile(f"{path} cannot be read: {error.strerror}") from error
+            raise MissingFile(f"{path} cannot be read: {reason(error)}") from error
         except DecodeError as error:
             raise DecodeError(f"{self.path / INFO}: {error}") from error
         self._features = {feature.port: feature for feature in self._info.features}

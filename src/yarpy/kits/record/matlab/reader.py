@@ -28,6 +28,7 @@ from yarpy.kits.record.mcap.layout import Damaged
 from yarpy.kits.record.mcap.storage import FOREVER
 from yarpy.kits.record.recorded import PortFacts, Recorded
 from yarpy.limit import RECORDED_TEXT
+from yarpy.platform.refusal import reason
 
 
 def files_of(path: Path) -> list[Path]:
@@ -41,7 +42,7 @@ def files_of(path: Path) -> list[Path]:
         folder, name = said.get("path", ""), said["filename"]
         found = path.parent / folder / name
     except OSError as error:
-        raise MissingFile(f"{path} cannot be read: {error.strerror}") from error
+        raise MissingFile(f"{path} cannot be read: {reason(error)}") from error
     except (ValueError, KeyError, TypeError, AttributeError, RecursionError) as error:
         raise DecodeError(f"{path}: no configuration of robometry: {error}") from error
     whole = found.with_name(f"{found.name}{ENDING}")
@@ -72,7 +73,7 @@ class MatStorage:
         except OSError as error:
             if error.errno is None:  # of the library for HDF5
                 raise DecodeError(f"{path}: {error}") from error
-            raise MissingFile(f"{path} cannot be read: {error.strerror}") from error
+            raise MissingFile(f"{path} cannot be read: {reason(error)}") from error
         except Exception as error:  # whatever the library raises for what a stranger wrote
             raise DecodeError(f"{path}: {error or type(error).__name__}") from error
         whole = {name: item for name, item in found.items() if not name.startswith("__")}

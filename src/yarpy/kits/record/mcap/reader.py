@@ -26,6 +26,7 @@ from yarpy.kits.record.mcap.index import (
 )
 from yarpy.kits.record.mcap.layout import MESSAGE, MESSAGE_HEAD, Channel, Damaged, Record
 from yarpy.limit import RECORDED_CHUNK
+from yarpy.platform.refusal import reason
 
 OPEN: Final = RECORDED_CHUNK  # bytes of chunks that are read side by side
 _DAMAGES: Final = 1000  # that are told
@@ -43,7 +44,7 @@ class McapFile:
         try:
             self._handle = os.open(path, os.O_RDONLY | getattr(os, "O_BINARY", 0))
         except OSError as error:
-            raise MissingFile(f"{path} cannot be read: {error.strerror}") from error
+            raise MissingFile(f"{path} cannot be read: {reason(error)}") from error
         try:
             self._window = Window(self._handle)
             self.index: Index = read_index(self._window)

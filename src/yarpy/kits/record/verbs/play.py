@@ -146,7 +146,7 @@ def summary(player: Player, ended: bool) -> str:
 
 def _steered(player: Player, paused: bool) -> bool:
     """Play with keys and a line of progress on a terminal."""
-    from yarpy.cli.verbs.top import keys
+    from yarpy.platform.keys import keys
 
     over, steering = threading.Event(), Keys(player)
     with keys() as pressed:

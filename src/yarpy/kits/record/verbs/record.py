@@ -306,8 +306,8 @@ def _live(
     from rich.console import Console
     from rich.live import Live
 
-    from yarpy.cli.verbs.top import keys
     from yarpy.kits.record.capture.screen import Rates, text
+    from yarpy.platform.keys import keys
 
     seen, console, typing = Rates(), Console(highlight=False), Keys(recorder, news)
     until = None if duration is None else began + duration

@@ -28,6 +28,7 @@ from yarpy.cli.browser import open_page, url_of
 from yarpy.cli.output import print_line
 from yarpy.config.configuration import default_port
 from yarpy.platform import waiting
+from yarpy.platform.shell import quoted, setting
 
 if TYPE_CHECKING:
     from yarpy.kits.sim.guest import Guest
@@ -40,15 +41,13 @@ TRY: Final = """
 
 Its ports speak many protocols, all at the same address. In another terminal, without any YARP:
 
-  curl 'http://{server}/?req=query+$port&port={robot}/head/rpc:i'
-  curl 'http://{rpc}/?req=set+pos+$axis+$angle&axis=1&angle=45'
-  curl 'http://{rpc}/?req=get+encs'
-  {{ echo CONNECT me; echo d; echo set pos 1 0; sleep 1; echo d; echo get encs; echo q; }} | nc {nc}
-  echo hello there | nc {nc}      # no protocol: see what strangers are told
-
+  curl {query}
+  curl {move}
+  curl {encoders}
+{netcat}
 With yarpy:
 
-  export YARPY_SERVER={server}
+  {setting}
   {yarpy} name list
   echo get encs | {yarpy} rpc {robot}/head/rpc:i
   {yarpy} read ... {robot}/inertial/measures:o once
@@ -63,6 +62,10 @@ With C++ YARP, after `yarp conf {where}`:
 
 In a C++ program: device remote_controlboard, remote {robot}/head, local /client.
 {elsewhere}Ctrl-C ends it all.
+"""
+NETCAT: Final = """\
+  {{ echo CONNECT me; echo d; echo set pos 1 0; sleep 1; echo d; echo get encs; echo q; }} | nc {nc}
+  echo hello there | nc {nc}      # no protocol: see what strangers are told
 """
 
 
@@ -146,10 +149,12 @@ def _advice(server: yarpy.NameServer, robot: Robot, page: yarpy.Port, elsewhere:
         bare=robot.name.strip("/"),
         page=url_of(page.address),
         phone="" if is_loopback(outward) or listening_host() else phone,
-        server=server.address,
+        query=quoted(f"http://{server.address}/?req=query+$port&port={robot.name}/head/rpc:i"),
+        move=quoted(f"http://{rpc.address}/?req=set+pos+$axis+$angle&axis=1&angle=45"),
+        encoders=quoted(f"http://{rpc.address}/?req=get+encs"),
+        netcat="" if sys.platform == "win32" else NETCAT.format(nc=rpc.address.replace(":", " ")),
+        setting=setting("YARPY_SERVER", server.address),
         where=server.address.replace(":", " "),
-        rpc=rpc.address,
-        nc=rpc.address.replace(":", " "),
         yarpy=_own_name(),
         elsewhere=elsewhere,
     )
@@ -159,11 +164,13 @@ def _own_name() -> str:
     """How to call this program from where one is."""
     import shutil
 
-    beside = os.path.join(os.path.dirname(sys.executable), "yarpy")
+    beside = shutil.which("yarpy", path=os.path.dirname(sys.executable))
     found = shutil.which("yarpy")
+    if beside is None:
+        return "python -m yarpy"
     if found is not None and os.path.realpath(found) == os.path.realpath(beside):
         return "yarpy"
-    if not os.path.exists(beside):
-        return "python -m yarpy"
-    near = os.path.relpath(beside)
-    return beside if near.startswith(os.pardir) else near
+    here, place = os.path.realpath(os.curdir), os.path.realpath(os.path.dirname(beside))
+    if place.startswith(here + os.sep):
+        return os.path.relpath(beside)
+    return beside

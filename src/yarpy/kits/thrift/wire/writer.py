@@ -42,6 +42,9 @@ Add = Callable[[Buffer], Any]
 OK: Final = 0x6B6F
 FAIL: Final = 0x6C696166
 
+#: of numpy, up to 1.26 and since
+_TRUTHS: Final = ("bool_", "bool")
+
 #: what is no Bottle as 3.9 has it
 _SOUND: Final = "yarp::sig::Sound"
 
@@ -174,7 +177,7 @@ def payload(kind: Scalar, value: Any, path: str) -> bytes:
 
 def _number(kind: Scalar, value: Any, path: str) -> bytes:
     wants = "an integer" if kind.letter not in "fd" else "a number"
-    if isinstance(value, bool) or type(value).__name__ == "bool_":
+    if isinstance(value, bool) or type(value).__name__ in _TRUTHS:
         raise TypeError(f"{path}: expected {wants}, got {shown(value)}")
     try:
         return Packing("<" + kind.letter).pack(value)
@@ -187,7 +190,7 @@ def _number(kind: Scalar, value: Any, path: str) -> bytes:
 
 
 def truth(value: Any, path: str) -> bool:
-    if isinstance(value, bool) or type(value).__name__ == "bool":
+    if isinstance(value, bool) or type(value).__name__ in _TRUTHS:
         return bool(value)
     if isinstance(value, int) and value in (0, 1):
         return bool(value)
