@@ -208,6 +208,8 @@ from yarp._pixel import PixelRgbSigned as PixelRgbSigned
 from yarp._pixel import PixelRgba as PixelRgba
 from yarp._place_view import IBattery as IBattery
 from yarp._place_view import IFrameTransform as IFrameTransform
+from yarp._point import Vector2D as Vector2D
+from yarp._point import Vector2DVector as Vector2DVector
 from yarp._poly_driver import PolyDriver as PolyDriver
 from yarp._port import Port as Port
 from yarp._portable import PortReader as PortReader
@@ -264,6 +266,7 @@ from yarp._sound_tools import makeSquareWave as makeSquareWave
 from yarp._sound_tools import makeTone as makeTone
 from yarp._sound_tools import mix as mix
 from yarp._stamp import Stamp as Stamp
+from yarp._std_string import std_string as std_string
 from yarp._struct import ColorRGB as ColorRGB
 from yarp._struct import LLMVector as LLMVector
 from yarp._struct import LLM_Message as LLM_Message

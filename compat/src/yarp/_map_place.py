@@ -12,6 +12,7 @@ from typing import Any
 
 import yarpy
 from yarp._iterator import SwigPyIterator
+from yarp._point import Vector2D, Vector2DVector
 from yarp._portable import Portable
 from yarpy.kits import devices, thrift
 
@@ -172,14 +173,13 @@ class Map2DPath(Portable):
 
 class Map2DArea(Portable):
     """A polygon in a map: `Map2DArea(map_id, corners, description)`, each a Map2DLocation or a pair
-    of numbers. `points` are pairs."""
+    of numbers. `points` are a Vector2DVector; whoever replaces them may take any pairs."""
 
     def __init__(self, map_name: str = "", area_points: Any = (), desc: str = "") -> None:
         self.map_id, self.description = map_name, desc
-        self.points: list[tuple[float, float]] = [
-            (each.x, each.y) if isinstance(each, Map2DLocation) else (each[0], each[1])
-            for each in area_points
-        ]
+        self.points: Any = Vector2DVector(
+            (each.x, each.y) if isinstance(each, Map2DLocation) else each for each in area_points
+        )
 
     def _outgoing(self) -> Any:
         corners = [yarpy.Vector([float(x), float(y)]) for x, y in self.points]
@@ -189,16 +189,16 @@ class Map2DArea(Portable):
         found = message.as_(devices.Area)
         self.map_id, self.description = found.map_id, found.description
         try:
-            self.points = [(float(each.array[0]), float(each.array[1])) for each in found.points]
-        except IndexError:
+            self.points = Vector2DVector(each.array[:2] for each in found.points)
+        except ValueError:
             raise yarpy.DecodeError("a corner of an area has two numbers") from None
 
-    def __getitem__(self, index: int) -> tuple[float, float]:
-        return self.points[index]
+    def __getitem__(self, index: int) -> Vector2D:
+        return Vector2DVector(self.points)[index]
 
     def clear(self) -> None:
         """Remove all corners."""
-        self.map_id, self.points, self.description = "", [], ""
+        self.map_id, self.points, self.description = "", Vector2DVector(), ""
 
     def isValid(self) -> bool:
         """Return whether it has three corners."""
@@ -214,7 +214,8 @@ class Map2DArea(Portable):
 
     def _has(self, x: float, y: float) -> bool:
         inside = False
-        for (x1, y1), (x2, y2) in zip(self.points, self.points[1:] + self.points[:1], strict=True):
+        corners = [*self.points]
+        for (x1, y1), (x2, y2) in zip(corners, corners[1:] + corners[:1], strict=True):
             crosses = (y1 > y) != (y2 > y)
             if crosses and x < (x2 - x1) * (y - y1) / (y2 - y1) + x1:
                 inside = not inside
@@ -253,7 +254,8 @@ class Map2DArea(Portable):
 
     def isEqual(self, other: Map2DArea) -> bool:
         """Return whether it is the same polygon, however it is described."""
-        return (self.map_id, self.points) == (other.map_id, other.points)
+        mine, others = (Vector2DVector(each.points) for each in (self, other))
+        return self.map_id == other.map_id and [*mine] == [*others]
 
     def notEqual(self, other: Map2DArea) -> bool:
         return not self.isEqual(other)

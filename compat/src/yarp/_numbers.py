@@ -60,6 +60,10 @@ class StdVector(Generic[T]):
     def __delitem__(self, index: Any) -> None:
         del self._items[index]
 
+    def get(self, index: int) -> T:
+        """Return an element; C++'s bindings have [] alone, some programs this."""
+        return self._items[index]
+
     def size(self) -> int:
         return len(self._items)
 

@@ -49,6 +49,7 @@ _MODULES = {
     "IJointFaultRaw IMotorEncodersRaw IMotorRaw IPWMControlRaw IPidControlRaw IPositionControlRaw "
     "IPositionDirectRaw IRemoteVariablesRaw ITorqueControlRaw IVelocityControlRaw",
     "_numbers": "DVector IVector BVector SVector SPairVector ShortVector",
+    "_std_string": "std_string",
     "_vector": "Vector VectorInt VectorBase",
     "_matrix": "Matrix removeCols removeRows submatrix",
     "_sound": "Sound",
@@ -72,6 +73,7 @@ _MODULES = {
     "_controller_view": "ICartesianControl CartesianEvent CartesianEventParameters "
     "CartesianEventVariables",
     "_gaze_view": "IGazeControl GazeEvent GazeEventParameters GazeEventVariables",
+    "_point": "Vector2D Vector2DVector",
     "_map_place": "Map2DLocation Map2DPath Map2DArea",
     "_struct": "Map2DLocationVector Map2DObject OdometryData Pose6D ColorRGB LLM_Message "
     "LLMVector Map2DLocationData Map2DPathData Map2DAreaData Map2DObjectData vertex_t",
