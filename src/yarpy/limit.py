@@ -172,6 +172,8 @@ VIEW_SECONDS: Final = 10.0  # in which a page asks, and takes what it is sent
 # Devices
 MAP_NAMES: Final = 10_000  # places, paths, areas, objects that a server of maps keeps, of each
 MAP_GRIDS: Final = 100  # maps that it keeps
+MAP_TEXT: Final = 1 << 24  # bytes of a file of names, or of the list of a collection
+MAP_FILES: Final = 1000  # in its folder: it writes no more
 TALK_LINES: Final = 1000  # of a conversation that are kept
 WORLD_OBJECTS: Final = 10_000  # of a simulated world, and devices that somebody has described
 SERIAL_WAITING: Final = 1 << 16  # characters that nobody has received yet

@@ -15,7 +15,7 @@ _SIMULATED: Final = (
     *("fakeBattery", "fakeChatBotDevice", "fakeJointCoupling", "fakeJoypad", "fakeLLMDevice"),
     *("fakeLocalizer", "fakeMicrophone", "fakeNavigation", "fakeOdometry2D", "fakePositionSensor"),
     *("fakeSerialPort", "fakeSimulatedWorld", "fakeSpeaker", "fakeSpeechSynthesizer"),
-    *("fakeSpeechTranscription", "map2DStorage", "robotDescriptionStorage"),
+    *("fakeSpeechTranscription", "robotDescriptionStorage"),
 )
 _KINDS: Final = (
     *("LLM", "RGBDSensor", "audioRecorder", "chatBot", "JoypadControl", "localization2D", "map2D"),
@@ -68,6 +68,7 @@ _DEVICES: Final[dict[str, str]] = {
     "frameTransformServer": "remote:transform_server",
     "frameWriter_nws_yarp": "wrapper:FrameWriter",
     "gamepad": "hardware.gamepad:gamepad",
+    "map2DStorage": "simulated.plugin:map_storage",
     "multipleanalogsensorsremapper": "multi_sensor.remapper:Remapper",
     "multipleanalogsensorsserver": "wrapper:MultiSensor",
     "opencv_grabber": "hardware.opencv:camera",

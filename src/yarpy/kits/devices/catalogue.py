@@ -74,7 +74,7 @@ _OTHERS: Final = {
     "fakeSimulatedWorld": "a world without a simulator: served by simulatedWorld_nws_yarp",
     "fakeSpeaker": "simulated loudspeaker: served by AudioPlayerWrapper",
     "frameTransformServer": "knows where frames are, and tells who asks; serves itself",
-    "map2DStorage": "maps and places, in memory: served by map2D_nws_yarp",
+    "map2DStorage": "maps and places, of a folder if asked for: served by map2D_nws_yarp",
     "gamepad": "a gamepad or joystick of Linux: served by JoypadControl_nws_yarp",
     "multipleanalogsensorsremapper": "the sensors of what is attached, as one device",
     "opencv_grabber": "a camera or film of OpenCV: served by frameGrabber_nws_yarp",

@@ -1,5 +1,6 @@
 """Maps, and what has a name in them."""
 
+from pathlib import Path
 from typing import Any
 
 import pytest
@@ -44,3 +45,35 @@ def test_maps() -> None:
         storage.store_map(Grid(2, 2))
     storage.clear_maps()
     assert storage.map_names() == []
+
+
+def test_files(tmp_path: Path) -> None:
+    storage: Any = MapStorage(tmp_path)
+    storage.store_map(Grid.of("kitchen", [[0, 0, 100]]))
+    storage.store_location("door", Place("kitchen", 1.0, 2.0, 90.0))
+    storage.save_maps("maps_collection.ini")
+    storage.save_names("locations.ini")
+    storage.save_map("kitchen", "copy.map")
+    again: Any = MapStorage(tmp_path)
+    assert again.map_names() == ["kitchen"] and again.map("kitchen").width == 3
+    assert again.location("door") == Place("kitchen", 1.0, 2.0, 90.0)
+    again.clear_maps()
+    again.clear_locations()
+    again.load_map("copy.map")
+    assert again.map_names() == ["kitchen"]
+    again.reload_maps()
+    again.reload_names()
+    assert again.location_names() == ["door"]
+
+
+def test_without_a_folder() -> None:
+    storage = MapStorage()
+    for use in (storage.load_map, storage.load_maps, storage.load_names, storage.save_names):
+        with pytest.raises(Refused, match="without a folder"):
+            use("locations.ini")
+
+
+def test_a_damaged_file_is_told_at_once(tmp_path: Path) -> None:
+    (tmp_path / "locations.ini").write_text("hello\n")
+    with pytest.raises(DecodeError, match=r"locations.ini: line 1"):
+        MapStorage(tmp_path)

@@ -1,17 +1,25 @@
-"""MapStorage: keeps maps and what has a name in them, in memory; map2DStorage in C++.
+"""MapStorage: keeps maps and what has a name in them; map2DStorage in C++.
 
-Rules: anybody can store something, so there is a limit for each. Files of C++'s map server are not
-read or written: those members are missing, which a client is told.
+    storage = MapStorage()                  in memory alone
+    storage = MapStorage("maps")            with the files of a folder, which may be C++'s
+
+Rules: anybody can store something, so there is a limit for each. Clients may name files of the
+folder alone, where C++ takes those of the whole computer; without a folder the members with files
+refuse. What is read comes to what is kept, and takes its place where the names are the same.
 """
 
 from __future__ import annotations
 
 import threading
 from collections.abc import Callable
+from os import PathLike
+from pathlib import Path
 from typing import Any, Final, Generic, TypeVar
 
 from yarpy.kits.devices.interfaces.grid import CELLS, Grid
+from yarpy.kits.devices.interfaces.map_names import MapNames
 from yarpy.kits.devices.refusal import Refused
+from yarpy.kits.devices.simulated.map_folder import MapFolder
 from yarpy.limit import MAP_GRIDS, MAP_NAMES
 
 T = TypeVar("T")
@@ -46,6 +54,9 @@ class _Shelf(Generic[T]):
     def all(self) -> list[T]:
         return [*self._kept.values()]
 
+    def named(self) -> dict[str, T]:
+        return dict(self._kept)
+
     def rename(self, name: str, new_name: str) -> None:
         with self._lock:
             value = self.get(name)
@@ -63,15 +74,26 @@ class _Shelf(Generic[T]):
 
 
 class MapStorage:
-    """Every member of `interfaces.map2d.Map2D` but those of files."""
+    """Every member of `interfaces.map2d.Map2D`.
 
-    def __init__(self) -> None:
+    folder: where the files are. collection: the list of its maps, one a line as
+    `mapfile: kitchen.map`, with `crop` behind it to leave out borders that nobody has seen; names:
+    what has a name in them. Both are read now, if they are there. Raises OSError, DecodeError.
+    """
+
+    def __init__(
+        self,
+        folder: str | PathLike[str] = "",
+        collection: str = "maps_collection.ini",
+        names: str = "locations.ini",
+    ) -> None:
         self._maps: _Shelf[Grid] = _Shelf("map", MAP_GRIDS)
         self._compress = False
         self.map_names, self.remove_map = self._maps.names, self._maps.delete
         self.clear_maps = self._maps.clear
+        self._shelves: dict[str, _Shelf[Any]] = {}
         for one, many in _KINDS:
-            shelf: _Shelf[Any] = _Shelf(one, MAP_NAMES)
+            shelf = self._shelves[many] = _Shelf(one, MAP_NAMES)
             members: dict[str, Callable[..., Any]] = {
                 f"store_{one}": shelf.store,
                 one: shelf.get,
@@ -82,6 +104,13 @@ class MapStorage:
                 f"clear_{many}": shelf.clear,
             }
             self.__dict__.update(members)
+        self._collection, self._names = collection, names
+        self._folder = MapFolder(Path(folder)) if folder else None
+        if self._folder is not None:
+            if self._folder.has(collection):
+                self.reload_maps()
+            if self._folder.has(names):
+                self.reload_names()
 
     def store_map(self, grid: Grid) -> None:
         """Keep a map under its name. Raises DecodeError: its cells are no map."""
@@ -117,6 +146,49 @@ class MapStorage:
         """Forget the temporary obstacles in all maps."""
         for name in self._maps.names():
             self.clear_obstacles(name)
+
+    def load_map(self, file: str) -> None:
+        """Read a .map file of the folder."""
+        self.store_map(self._files.grid(file))
+
+    def save_map(self, name: str, file: str) -> None:
+        """Write a map as that .map file, and three beside it that are named after the map."""
+        self._files.keep_grid(self._maps.get(name), file)
+
+    def load_maps(self, file: str) -> None:
+        """Read all maps of a collection."""
+        for grid in self._files.grids(file):
+            self.store_map(grid)
+
+    def save_maps(self, file: str) -> None:
+        """Write all maps, and the collection of them."""
+        self._files.keep_grids(self._maps.all(), file)
+
+    def reload_maps(self) -> None:
+        """Read the collection of the folder again."""
+        self.load_maps(self._collection)
+
+    def load_names(self, file: str) -> None:
+        """Read what has a name in a file."""
+        found = self._files.names(file)
+        for many, shelf in self._shelves.items():
+            for name, value in getattr(found, many).items():
+                shelf.store(name, value)
+
+    def save_names(self, file: str) -> None:
+        """Write all that has a name."""
+        found = MapNames(**{many: shelf.named() for many, shelf in self._shelves.items()})
+        self._files.keep_names(found, file)
+
+    def reload_names(self) -> None:
+        """Read the file of names of the folder again."""
+        self.load_names(self._names)
+
+    @property
+    def _files(self) -> MapFolder:
+        if self._folder is None:
+            raise Refused("it was started without a folder for its maps")
+        return self._folder
 
 
 #: What has a name, one and many.

@@ -9,7 +9,8 @@ Rules: cameras take `width` and `height`, joints the group GENERAL with `Joints`
 inertial unit `sensorName`, `frameName` and `constantValue`, a sensor with channels `channelsNum`, a
 screen `width` and `height`, a laser `test`, `const_distance`, `map_file` (with `map_context` or
 without), `localization_port` or `localization_server`, `clip_min`, `clip_max` and the group SENSOR
-with `min_angle`, `max_angle` and `resolution`; the others take nothing.
+with `min_angle`, `max_angle` and `resolution`, a storage of maps `mapCollectionContext`,
+`mapCollectionFile` and `mapLocationsFile`; the others take nothing.
 """
 
 from __future__ import annotations
@@ -38,7 +39,6 @@ _WITHOUT_OPTIONS: Final = {
     "fakeSpeaker": "SimulatedSpeaker",
     "fakeSpeechSynthesizer": "SimulatedSynthesizer",
     "fakeSpeechTranscription": "SimulatedTranscription",
-    "map2DStorage": "MapStorage",
     "robotDescriptionStorage": "DescriptionStorage",
 }
 _MOST: Final = 1000  # joints or channels: more than any robot has
@@ -128,6 +128,26 @@ def laser(options: Property, *, names: NameClient | None = None) -> object:
         step=_number(sensor, "resolution", 1.0),
         distance=_number(constant, "const_distance", _number(options, "const_distance", 1.0)),
     )
+
+
+def map_storage(options: Property, *, names: NameClient | None = None) -> object:
+    """Return `map2DStorage`. Raises ValueError for a collection that is nowhere, OSError and
+    DecodeError for files that cannot be read."""
+    from yarpy.kits.devices import MapStorage
+    from yarpy.resource import ResourceFinder
+
+    context = str(options.find("mapCollectionContext", "") or "")
+    collection = str(options.find("mapCollectionFile", "maps_collection.ini"))
+    places = str(options.find("mapLocationsFile", "locations.ini"))
+    if not context:
+        return MapStorage()
+    found = ResourceFinder(context=context).file(collection)
+    if found is None:
+        raise ValueError(
+            f"there is no file {collection} in the context {context}: make one, which may be "
+            "empty, or say --mapCollectionFile"
+        )
+    return MapStorage(found.parent, found.name, places)
 
 
 def _map_file(options: Property) -> str:
