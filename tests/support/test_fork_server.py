@@ -35,7 +35,8 @@ for line in sys.stdin:
 
 def program(start, folder: Path, *words: str, kind: str = "-m", **variables: str) -> Process:
     script = folder / "prog.py"
-    script.write_text(CODE, encoding="utf-8")
+    if not script.exists():  # another program may be reading it just now
+        script.write_text(CODE, encoding="utf-8")
     how = {"-m": ["-m", "prog"], "-c": ["-c", CODE], "file": [str(script)]}[kind]
     args = [sys.executable, *how, *words]
     return Process(args, env={**os.environ, **variables}, cwd=folder, start=start)

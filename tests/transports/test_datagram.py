@@ -6,12 +6,10 @@ import contextlib
 import socket
 import sys
 import threading
-import time
-from collections.abc import Callable
 
 import pytest
 from support.port import free_port
-from support.wait import HANG, wait_until
+from support.wait import HANG, runs, wait_until
 
 from yarpy.transports.datagram import DatagramTransport, open_mcast, open_udp
 from yarpy.transports.pace import Pace
@@ -26,7 +24,7 @@ def receive(end: DatagramTransport) -> bytes:
 
 def pair() -> tuple[DatagramTransport, DatagramTransport]:
     listening = open_udp(True, HOME, HOME, 0)
-    listening.limit_waiting(5)
+    listening.limit_waiting(HANG)
     return open_udp(False, HOME, HOME, listening.port), listening
 
 
@@ -95,13 +93,9 @@ def test_sender_hears_that_nobody_listens_any_more() -> None:
     assert not near.ended()
     far.close()
     near.send([b"lost"])
-    deadline = time.monotonic() + 5
-    while not near.ended() and time.monotonic() < deadline:
-        time.sleep(0.001)
+    wait_until(near.ended)
     with pytest.raises(ConnectionRefusedError):
-        for _ in range(100):
-            near.send([b"lost"])
-            time.sleep(0.001)
+        wait_until(lambda: near.send([b"lost"]))
     near.close()
 
 
@@ -112,7 +106,6 @@ def test_empty_datagram_is_not_an_end() -> None:
     assert receive(far) == b"after"
     room = memoryview(bytearray(10))
     near.send([b""])
-    time.sleep(0.02)
     assert far.try_recv_into(room) == -1
     near.close()
     far.close()
@@ -159,37 +152,31 @@ def test_trying_does_not_wait() -> None:
     room = memoryview(bytearray(10))
     assert far.try_recv_into(room) == -1
     near.send([b"abc"])
-    deadline = time.monotonic() + 5
-    count = -1
-    while count < 0 and time.monotonic() < deadline:
-        count = far.try_recv_into(room)
-    assert count == 3
+    wait_until(lambda: far.try_recv_into(room) == 3)
     near.close()
     far.close()
 
 
-def woken(end: DatagramTransport, wake: Callable[[], None]) -> float:
-    """How long it takes to wake a receiver that waits."""
-    done: list[float] = []
-
-    def wait() -> None:
-        assert end.recv_into(memoryview(bytearray(10))) == 0
-        done.append(time.monotonic())
-
-    thread = threading.Thread(target=wait, daemon=True)
+def woken(end: DatagramTransport) -> int:
+    """What a receiver that waits returns when it is interrupted."""
+    found: list[int] = []
+    thread = threading.Thread(
+        target=lambda: found.append(end.recv_into(memoryview(bytearray(10)))), daemon=True
+    )
     thread.start()
-    time.sleep(0.05)
-    started = time.monotonic()
-    wake()
+    ident = thread.ident
+    assert ident is not None
+    wait_until(lambda: runs("DatagramTransport.recv_into", ident))
+    end.interrupt()
     thread.join(HANG)
-    assert done, "the receiver still waits"
-    return done[0] - started
+    assert found, "the receiver still waits"
+    return found[0]
 
 
 def test_interrupt_wakes_a_receiver() -> None:
     near, far = pair()
     far.limit_waiting(None)
-    assert woken(far, far.interrupt) < 1
+    assert woken(far) == 0
     near.close()
     far.close()
 
@@ -235,7 +222,7 @@ def test_group_reaches_every_member_and_the_port_stays_shared() -> None:
 def test_member_leaves_without_troubling_the_group() -> None:
     number = free_port()
     leaving, staying = (open_mcast(True, HOME, HOME, GROUP, number) for _ in range(2))
-    assert woken(leaving, leaving.interrupt) < 1
+    assert woken(leaving) == 0
     room = memoryview(bytearray(10))
     assert staying.try_recv_into(room) == -1
     leaving.close()

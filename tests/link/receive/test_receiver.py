@@ -9,6 +9,7 @@ import time
 import pytest
 from support.build import changes_a_constant
 from support.inbound import Owner, linked, message, served
+from support.timer import beating
 from support.transport import scripted
 from support.wait import HANG, wait_until
 
@@ -165,6 +166,18 @@ def test_message_that_takes_too_long_is_told_so() -> None:
         assert near.recv(100) == b"too late\r\n"
         wait_until(lambda: owner.ended)
         assert owner.ended == [("the peer sends a message too slowly", False)]
+
+
+def test_signals_lengthen_no_time_of_a_message() -> None:
+    """A limit of the system's begins anew behind each, and behind each halt of the process."""
+    near, far = socket.socketpair()
+    owner = Owner()
+    link = Inbound(owner, driver_of(SocketTransport(far)), Asking(Route("/peer", "/here", "asking")))
+    near.sendall(b"slow\r\n")
+    with near, beating():
+        link.serve()
+        assert near.recv(100) == b"too late\r\n"
+    assert owner.ended == [("the peer sends a message too slowly", False)]
 
 
 def test_time_of_a_message_ends_with_it() -> None:

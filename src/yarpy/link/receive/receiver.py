@@ -261,7 +261,8 @@ class Receiver:
             if self._wait is None or left < self._wait:
                 self.driver.transport.limit_waiting(left)
             self.incoming.advance(self.driver.bytes_in - self._begins)
-            self.driver.fill(deadline)
+            # As a deadline: that limit of the system's begins anew behind each signal.
+            self.driver.fill(self._due if deadline is None else min(deadline, self._due))
         except Timeout as error:
             steps = self._steps
             if steps is not None and time.monotonic() > self._due - 0.01:

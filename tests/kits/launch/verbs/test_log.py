@@ -80,7 +80,7 @@ def test_filters_and_files(cli, names, tmp_path):
             three.write(line("/log/vm/three/3", "Wanted", time=1795219555.5))
             process.wait_line(r" vm/three/3 \[INFO\] Wanted$", stream="out")
             process.signal(signal.SIGINT)
-            assert process.wait() == 0
+            assert process.wait() == 0, process.stderr
     assert "other" not in process.stdout
     assert files[0].read_text().endswith(" vm/three/3 [INFO] Wanted\n")
     assert json.loads(files[1].read_text())["message"] == "Wanted"
