@@ -172,7 +172,9 @@ def test_signals_lengthen_no_time_of_a_message() -> None:
     """A limit of the system's begins anew behind each, and behind each halt of the process."""
     near, far = socket.socketpair()
     owner = Owner()
-    link = Inbound(owner, driver_of(SocketTransport(far)), Asking(Route("/peer", "/here", "asking")))
+    link = Inbound(
+        owner, driver_of(SocketTransport(far)), Asking(Route("/peer", "/here", "asking"))
+    )
     near.sendall(b"slow\r\n")
     with near, beating():
         link.serve()
