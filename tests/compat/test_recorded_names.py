@@ -121,6 +121,9 @@ def test_two_objects_in_a_message() -> None:
     assert got.head.toString() == "about (1 2)" and [*got.body] == [1.5, 2.5]
     three = yarp.ConnectionReader.createConnectionReader(yarp.Bottle("1 2 3").toBinary())
     assert not yarp.PortablePairBase.readPair(three, yarp.Bottle(), yarp.Bottle())
+    ready = yarp.PortablePair(body=yarp.Vector())
+    assert yarp.Portable.copyPortable(sent, ready)
+    assert ready.head.toString() == "about (1 2)" and [*ready.body] == [1.5, 2.5]
 
 
 def test_words_of_eight_letters() -> None:

@@ -216,6 +216,7 @@ from yarp._portable import PortReader as PortReader
 from yarp._portable import PortReaderCreator as PortReaderCreator
 from yarp._portable import PortWriter as PortWriter
 from yarp._portable import Portable as Portable
+from yarp._portable_pair import PortablePair as PortablePair
 from yarp._portable_pair import PortablePairBase as PortablePairBase
 from yarp._property import Property as Property
 from yarp._qos import QosStyle as QosStyle
@@ -876,6 +877,7 @@ PeriodicThread_getKeyOfCaller = PeriodicThread.getKeyOfCaller
 PeriodicThread_setDefaultStackSize = PeriodicThread.setDefaultStackSize
 PeriodicThread_yield_c = PeriodicThread.yield_c
 Portable_copyPortable = Portable.copyPortable
+PortablePair_copyPortable = PortablePair.copyPortable
 PortablePairBase_readPair = PortablePairBase.readPair
 PortablePairBase_writePair = PortablePairBase.writePair
 Pose6D_copyPortable = Pose6D.copyPortable

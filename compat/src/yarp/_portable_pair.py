@@ -1,4 +1,4 @@
-"""PortablePairBase: two objects in one message, as a list of two.
+"""PortablePair and its base: two objects in one message, as a list of two.
 
 Rules: objects that are lists of Bottles themselves, such as Bottles, vectors and images, keep their
 form; others are refused.
@@ -7,11 +7,14 @@ form; others are refused.
 from __future__ import annotations
 
 import struct
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import yarpy
 from yarp._memory import encoded
-from yarp._portable import PortReader, PortWriter
+from yarp._portable import Portable, PortReader, PortWriter
+
+if TYPE_CHECKING:
+    from yarp._connection import ConnectionReader, ConnectionWriter
 
 
 class PortablePairBase:
@@ -43,6 +46,24 @@ class PortablePairBase:
         except (yarpy.DecodeError, struct.error):
             return False
         return True
+
+
+class PortablePair(Portable):
+    """Two objects, `head` and `body`; Bottles, if nothing else is given."""
+
+    def __init__(self, head: Portable | None = None, body: Portable | None = None) -> None:
+        from yarp._bottle import Bottle
+
+        self.head: Any = Bottle() if head is None else head
+        self.body: Any = Bottle() if body is None else body
+
+    def write(self, writer: ConnectionWriter) -> bool:
+        """Write both."""
+        return PortablePairBase.writePair(writer, self.head, self.body)
+
+    def read(self, reader: ConnectionReader) -> bool:
+        """Read both."""
+        return PortablePairBase.readPair(reader, self.head, self.body)
 
 
 _LIST = 256

@@ -18,7 +18,7 @@ _MODULES = {
     "_connection": "ConnectionReader ConnectionWriter",
     "_contact": "Contact ContactStyle",
     "_nested_contact": "NestedContact",
-    "_portable_pair": "PortablePairBase",
+    "_portable_pair": "PortablePair PortablePairBase",
     "_contactable": "Contactable PortReport PortInfo",
     "_abstract_contactable": "UnbufferedContactable AbstractContactable",
     "_stamp": "Stamp",
