@@ -101,6 +101,16 @@ def test_names_that_cannot_be(name: str) -> None:
         check_name(name)
 
 
+@pytest.mark.parametrize(
+    ("name", "instead"),
+    [("/a/", "/a"), ("/a//", "/a"), ("/a b", "/a_b"), ("/a\n", "/a"), ("/a b/", "/a_b")],
+)
+def test_a_name_to_try_instead(name: str, instead: str) -> None:
+    with pytest.raises(AddressError, match=f'C\\+\\+ YARP .*try "{instead}"'):
+        check_name(name)
+    assert check_name(instead) == instead
+
+
 def test_long_name_is_not_repeated_in_full() -> None:
     with pytest.raises(AddressError) as caught:
         check_name("/" + "x" * 100_000)

@@ -159,12 +159,16 @@ def check_name(name: str) -> str:
     if not name.startswith("/"):
         problem = f'must start with "/": try "/{name}"'
     elif any(c.isspace() for c in name):
-        problem = "must not contain blanks"
+        # C++ opens "/a b" as "/a", which may be the name of somebody else.
+        joined = "_".join(name.split()).rstrip("/")
+        problem = f'must not contain blanks, at which C++ YARP cuts it off: try "{joined:.80}"'
     elif '"' in name or "\\" in name:
         # The lines of name servers leave quotes out and double backslashes, ours as those of C++.
         problem = "must not contain quotes or backslashes, which name servers cannot hand on"
     elif name.endswith("/"):
-        problem = 'must not end with "/"'
+        problem = 'must not end with "/": C++ YARP opens such a port, and refuses to connect it'
+        if stem := name.rstrip("/"):
+            problem += f'; try "{stem:.80}"'
     elif _host_port(name[1:].partition("/")[0]) is not None:
         problem = "reads as an address host:port; do not end the first part in a colon and digits"
     elif len(name.encode("utf-8", "surrogateescape")) > 900:

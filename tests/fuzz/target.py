@@ -32,6 +32,7 @@ from support.thrift import CALLS, GOLDEN
 from support.thrift import rows as thrift_rows
 from support.thrift_module import ROWS, SPELLINGS, apache, data, service
 from support.vectors import binaries, rows
+from support.way_back import way_back
 
 import yarpy
 from yarpy import registry
@@ -86,7 +87,7 @@ from yarpy.route import UNDECLARED, Declared, Route, parse_carrier
 from yarpy.testing import End
 from yarpy.testing.drive import Shelf, Stalled
 from yarpy.wire.datagram import Assembler
-from yarpy.wire.message import CALL, DATA, Answer, Message, Packet
+from yarpy.wire.message import CALL, DATA, Message, Packet
 from yarpy.wire.shared_stream import SharedStream
 from yarpy.wire.stream import DatagramStream
 
@@ -462,7 +463,7 @@ def _served(data: bytes) -> None:
     """What a service is asked; it answers whatever comes, and what it answers can be sent."""
     for spelling in ("binary", "text"):
         message = Message("d", data, spelling=spelling)
-        message.answer = Answer(lambda value: None)
+        message.answer = way_back()
         b"".join(codec.encode(_SERVER(message)))
 
 

@@ -54,6 +54,19 @@ def test_client_of_a_cpp_server(cpp_server: CppYarp) -> None:
         assert "registration name /y ip 10.0.0.1 port 5 type udp\n" in listing
 
 
+def test_names_that_cpp_opens_and_nobody_connects(cpp_server: CppYarp) -> None:
+    """Which is why they are refused here (`check_name`)."""
+    with cpp_server.popen("read", "/slash/") as slash, cpp_server.popen("read", "/cut here") as cut:
+        slash.wait_line("Port /slash/ active")
+        cut.wait_line("Port /cut active")
+        with cpp_server.popen("write", "/w") as writer:
+            writer.wait_line("Port /w active")
+            for name in ("/slash/", "/cut here"):
+                for ends in (("/w", name), (name, "/w")):
+                    done = cpp_server.run("connect", *ends)
+                    assert done.returncode and "no way to make connection" in done.stderr
+
+
 def test_client_survives_a_restart_of_the_cpp_server(cpp: CppYarp) -> None:
     with cpp.server() as server:
         names = client_of(server)

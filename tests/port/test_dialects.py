@@ -56,6 +56,28 @@ def test_a_plain_port_writes_as_its_reader_reads(carrier: str, names: LocalNames
         assert to_yarp4(Bottle([1.5]).to_bytes()) != Bottle([1.5]).to_bytes()
 
 
+def test_a_group_whose_readers_are_all_of_yarp_4(
+    names: LocalNames, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    older, newer = Bottle([1.5]).to_bytes(), to_yarp4(Bottle([1.5]).to_bytes())
+    with (
+        Port("/out", names=names) as out,
+        BufferedPort("/one", strict=True, names=names) as one,
+        BufferedPort("/two", strict=True, names=names) as two,
+    ):
+        with monkeypatch.context() as patch:
+            administer_as_yarp4(patch)
+            out.connect("/one", "mcast")
+        out.write([1.5])
+        assert one.read(HANG).to_bytes() == newer
+        out.connect("/two", "mcast")  # of YARP 3
+        out.write([1.5])
+        assert one.read(HANG).to_bytes() == two.read(HANG).to_bytes() == older
+        out.disconnect("/two")
+        out.write([1.5])
+        assert one.read(HANG).to_bytes() == newer
+
+
 def test_questions_too(names: LocalNames) -> None:
     asked: list[bytes] = []
     with (

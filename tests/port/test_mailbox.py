@@ -12,6 +12,7 @@ from types import FrameType
 import pytest
 from support.lasted import lasted
 from support.wait import HANG, wait_until
+from support.way_back import way_back
 
 import yarpy
 from yarpy.data.bottle import Bottle
@@ -20,7 +21,7 @@ from yarpy.link.counter import Counter
 from yarpy.nameserver.local import LocalNames
 from yarpy.port.mailbox import Callback, Fifo, Latest, Mailbox, Rendezvous, memory
 from yarpy.port.port import BufferedPort
-from yarpy.wire.message import CALL, DATA, Answer, Message
+from yarpy.wire.message import CALL, DATA, Message
 
 
 class Link:
@@ -247,7 +248,7 @@ def test_question_holds_its_connection_until_it_is_answered() -> None:
     box, link = Rendezvous(), Link()
     answers: list[object] = []
     question = message("ask", CALL)
-    question.answer = Answer(answers.append)
+    question.answer = way_back(answers.append)
     thread = threading.Thread(target=box.put, args=(link, question), daemon=True)
     thread.start()
     found = box.take(5)
@@ -263,7 +264,7 @@ def test_question_holds_its_connection_until_it_is_answered() -> None:
 def test_question_that_is_left_open_is_closed(how: str) -> None:
     box, link = Rendezvous(), Link()
     question = message("ask", CALL)
-    question.answer = Answer(lambda value: None)
+    question.answer = way_back()
     thread = threading.Thread(target=box.put, args=(link, question), daemon=True)
     thread.start()
     assert box.take(5) is not None
@@ -279,7 +280,7 @@ def test_connection_goes_on_when_its_asker_has_gone() -> None:
         raise ConnectionError("gone")
 
     question = message("ask", CALL)
-    question.answer = Answer(gone)
+    question.answer = way_back(gone)
     thread = threading.Thread(target=box.put, args=(link, question), daemon=True)
     thread.start()
     found = box.take(5)

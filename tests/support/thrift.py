@@ -4,8 +4,10 @@ import json
 from pathlib import Path
 from typing import Any
 
+from support.way_back import way_back
+
 from yarpy.data import codec
-from yarpy.wire.message import CALL, Answer, Message
+from yarpy.wire.message import CALL, Message
 
 GOLDEN = Path(__file__).parents[1] / "golden" / "thrift"
 
@@ -24,7 +26,7 @@ def asked(data: bytes, spelling: Any = "binary", wants: bool = True) -> tuple[Me
     message = Message(CALL, data, spelling=spelling)
     message.source = "/client"
     if wants:
-        message.answer = Answer(answers.append)
+        message.answer = way_back(answers.append)
     return message, answers
 
 

@@ -8,6 +8,7 @@ from collections.abc import Callable
 
 import numpy
 import pytest
+from support.way_back import way_back
 
 from yarpy import registry
 from yarpy.data.bottle import Bottle, Property
@@ -19,7 +20,6 @@ from yarpy.wire.message import (
     CALL,
     DATA,
     UNSENDABLE,
-    Answer,
     Lines,
     Message,
     Packet,
@@ -153,7 +153,7 @@ def test_reply_goes_once() -> None:
     assert not message.wants_reply
     with pytest.raises(LocalProtocolError, match="/asker"):
         message.reply(1)
-    message.answer = Answer(answers.append)
+    message.answer = way_back(answers.append)
     assert message.wants_reply
     message.reply([1, 2])
     assert answers == [[1, 2]]
@@ -172,7 +172,7 @@ def test_answer_tells_of_its_end_once_it_went_or_failed_for_good() -> None:
         Packet(value).blocks  # noqa: B018
 
     for values, raised in (((1,), None), ((object(), 1), TypeError), (("gone",), LinkClosed)):
-        answer = Answer(send, lambda: ends.append("end"))
+        answer = way_back(send, lambda: ends.append("end"))
         for value in values:
             try:
                 answer.give(value)
@@ -198,7 +198,7 @@ def test_thread_that_answers_tells_who_has_left_the_question_meanwhile() -> None
         seen.append(answer.busy)
         Packet(value).blocks  # noqa: B018
 
-    answer = Answer(send)
+    answer = way_back(send)
     with pytest.raises(TypeError):
         answer.give(object())
     assert seen == [True, True, (False, 1)]
@@ -231,7 +231,7 @@ def test_copy_says_the_same_and_answers_nobody(
 ) -> None:
     received = bytearray(b"".join(Vector(range(1000)).to_wire()))
     message = Message(CALL, memoryview(received), "7 1.5")
-    message.source, message.answer = "/out", Answer(lambda value: None)
+    message.source, message.answer = "/out", way_back()
     if looked:
         _ = message.value
     found = how(message)
@@ -245,7 +245,7 @@ def test_copy_says_the_same_and_answers_nobody(
 def test_reply_that_cannot_be_sent_leaves_the_question_open(value: object) -> None:
     sent: list[object] = []
     message = Message(CALL)
-    message.answer = Answer(lambda value: sent.append(Packet(value).blocks))
+    message.answer = way_back(lambda value: sent.append(Packet(value).blocks))
     with pytest.raises(UNSENDABLE):
         message.reply(value)
     message.reply([1])

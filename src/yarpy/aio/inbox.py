@@ -35,7 +35,7 @@ class TaskRendezvous(Rendezvous):
         # The reader gets a copy, since the connection's thread holds on to the original. Once the
         # copy is garbage, nobody is left who could answer.
         copy = message.replaced(message.payload)
-        copy.spelling, copy.answer = message.spelling, _Reply(answer.give, over)
+        copy.spelling, copy.answer = message.spelling, _Reply(answer, over)
         if self.stopped:
             over()  # `interrupt` may have looked before it was there
         return copy
@@ -47,13 +47,31 @@ class TaskRendezvous(Rendezvous):
             offer.leave()
 
 
+class _Original:
+    """Answers the question that a copy was made of."""
+
+    def __init__(self, answer: Answer) -> None:
+        self._answer = answer
+
+    @property
+    def yarp4(self) -> bool:
+        return self._answer.by.yarp4
+
+    @yarp4.setter
+    def yarp4(self, yarp4: bool) -> None:
+        self._answer.by.yarp4 = yarp4
+
+    def reply(self, value: object) -> None:
+        self._answer.give(value)
+
+
 class _Reply(Answer):
     """The way back of one question; its connection goes on when it is used or forgotten."""
 
     __slots__ = ()
 
-    def __init__(self, send: Callable[[object], None], then: Callable[[], None]) -> None:
-        super().__init__(send, then)
+    def __init__(self, answer: Answer, then: Callable[[], None]) -> None:
+        super().__init__(_Original(answer), then)
 
     def __del__(self) -> None:
         if self.then is not None:

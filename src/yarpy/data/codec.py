@@ -26,7 +26,7 @@ from __future__ import annotations
 import reprlib
 from collections.abc import Callable
 from struct import Struct
-from typing import Any, Final, TypeVar, cast
+from typing import Any, Final, Protocol, TypeVar, cast
 
 from yarpy import registry
 from yarpy.data.bottle import Bottle, Numbers, Property, read_bottle
@@ -207,7 +207,14 @@ def has_own_text(obj: object) -> bool:
 # ---------------------------------------------------------------------------------- receiving
 
 
-def decode(view: Buffer) -> Any:
+class Question(Protocol):
+    """What a payload is that is to be answered."""
+
+    def note_yarp4(self) -> None:
+        """Its floats are those of YARP 4.0."""
+
+
+def decode(view: Buffer, question: Question | None = None) -> Any:
     """The natural value of a payload.
 
     A Bottle; a single value if it was sent as one; a Vector over the received bytes for a list of
@@ -247,6 +254,8 @@ def decode(view: Buffer) -> Any:
         other = older(view)
         if other is None:
             raise
+    if question is not None:
+        question.note_yarp4()
     return _decode_older(other)
 
 
@@ -298,7 +307,7 @@ def named(type_: Any) -> Any:
     return registry.types.load(type_) if isinstance(type_, str) else type_
 
 
-def decode_as(view: Buffer, type_: type[T]) -> T:
+def decode_as(view: Buffer, type_: type[T], question: Question | None = None) -> T:
     """The payload as an object of `type_`; else a DecodeError that says what came instead.
 
     `type_` is Bottle, list, tuple, Property, dict, str, int, float, bool, bytes, Vocab (and the odd
@@ -313,6 +322,8 @@ def decode_as(view: Buffer, type_: type[T]) -> T:
         other = older(view)
         if other is None:
             raise
+    if question is not None:
+        question.note_yarp4()
     return _decode_as(other, type_)
 
 

@@ -25,7 +25,7 @@ from yarpy.link.receive.budget import Budget
 from yarpy.link.receive.inbound import Inbound
 from yarpy.log import logger
 from yarpy.names.client import YarpNameClient
-from yarpy.port.answer import crowd, guard
+from yarpy.port.answer import crowd, guard, spelling
 from yarpy.port.answer.callbacks import Callbacks
 from yarpy.port.answer.monitoring import Monitoring
 from yarpy.port.answer.rivals import Rivals
@@ -101,6 +101,10 @@ class Inputs:
         """The port's name."""
         return self._hub.name
 
+    def _guess(self) -> bool:
+        """Return whether whoever does not tell is of YARP 4."""
+        return spelling.is_yarp4(self._hub.registration.names)
+
     @property
     def connections(self) -> tuple[Inbound, ...]:
         """The links but those of administrators, who pass by and bring no messages."""
@@ -137,6 +141,7 @@ class Inputs:
         """
         hub = self._hub
         link.receiver.page = hub.callbacks.page
+        link.receiver.guess = self._guess
         link.receiver.incoming.budget = self.budget
         try:
             hub.monitoring.incoming(link)

@@ -167,12 +167,13 @@ class Outputs:
             membership.unheard(value)
 
     def _elect(self) -> None:
-        """Let a single one of the connections into one multicast group send."""
-        elected = False
-        for link in self.links:
-            if link.carrier.delivery.broadcast:
-                link.active = not elected
-                elected = True
+        """Let a single one of the connections into one multicast group send: as YARP 4 spells
+        messages, if all that listen there are of it."""
+        group = [link for link in self.links if link.carrier.delivery.broadcast]
+        newest = all(link.route.yarp4 for link in group)
+        for link in group:
+            link.active = link is group[0]
+            link.sender.respells = newest and link.carrier.spelling == "binary"
 
     # -- going ------------------------------------------------------------------------------------
 

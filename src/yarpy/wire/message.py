@@ -7,7 +7,7 @@ dropped is never parsed. This is the one file of the wire that knows the data ro
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any, Final, Generic, Literal, Self, TypeAlias, overload
+from typing import TYPE_CHECKING, Any, Final, Generic, Literal, Protocol, Self, TypeAlias, overload
 
 from yarpy.data import codec
 from yarpy.data.bottle import Bottle
@@ -98,6 +98,13 @@ class Encoded:
 
     def to_text(self) -> bytes:
         return codec.encode_text(codec.decode(self.data))
+
+
+def in_yarp4(value: object) -> object:
+    """Return a value as YARP 4 spells it; itself if that is no other."""
+    blocks = codec.encode(value)
+    other = newest(blocks)
+    return value if other is blocks else Encoded(b"".join(other))
 
 
 class Packet:
@@ -205,21 +212,29 @@ def is_unsent(error: Exception) -> bool:
     return isinstance(error, UNSENDABLE) or getattr(error, "yarpy_unsent", False)
 
 
+class Answering(Protocol):
+    """What puts answers on the wire."""
+
+    yarp4: bool
+    """They are spelled as YARP 4 does."""
+
+    def reply(self, value: object) -> None:
+        """Put an answer on the wire. Raises as `Message.reply`."""
+
+
 class Answer:
     """The way back of one question: a holder of the message may answer, once, from any thread.
 
-    `send` puts it on the wire. `then` is called once that is done, or has failed for good; it is
+    `by` puts it on the wire. `then` is called once that is done, or has failed for good; it is
     set by the thread that waits for the end of the question. Who finds, when it leaves a question,
     that another thread is answering sets `left`, which that thread calls behind its answer, and
     then looks whether it is still `busy`.
     """
 
-    __slots__ = ("_ended", "_send", "left", "right", "then")
+    __slots__ = ("_ended", "by", "left", "right", "then")
 
-    def __init__(
-        self, send: Callable[[object], None], then: Callable[[], None] | None = None
-    ) -> None:
-        self._send = send
+    def __init__(self, by: Answering, then: Callable[[], None] | None = None) -> None:
+        self.by = by
         self.then = then
         self.left: Callable[[], None] | None = None
         self.right = [True]  # to answer; a thread takes it out, which only one can
@@ -229,6 +244,10 @@ class Answer:
     def busy(self) -> bool:
         """Return whether a thread is answering."""
         return not (self.right or self._ended)
+
+    def note_yarp4(self) -> None:
+        """Note that who asks spells floats as YARP 4 does, and is to be answered so."""
+        self.by.yarp4 = True
 
     def give(self, value: object) -> None:
         """Send it. What cannot be sent leaves the question open. Raises as `Message.reply`."""
@@ -240,7 +259,7 @@ class Answer:
             ) from None
         unsent = False
         try:
-            self._send(value)
+            self.by.reply(value)
         except Exception as error:
             unsent = is_unsent(error)
             raise
@@ -343,7 +362,7 @@ class Message(Generic[T]):
         """Return the payload as the Python object that is nearest to it, whatever the port is for.
         Raises DecodeError."""
         if self.spelling == "binary":
-            return codec.decode(self.payload)
+            return codec.decode(self.payload, self.answer)
         if self.spelling == "text":
             return codec.decode_text(self.payload)
         return self.payload
@@ -369,7 +388,7 @@ class Message(Generic[T]):
         if isinstance(type_, str):
             type_ = codec.named(type_)
         if self.spelling == "binary":
-            return codec.decode_as(self.payload, type_)
+            return codec.decode_as(self.payload, type_, self.answer)
         if self.spelling == "text":
             return codec.decode_text_as(self.payload, type_)
         payload: object = self.payload

@@ -98,7 +98,7 @@ def test_link_closed_is_what_a_late_reply_gets() -> None:
     kept: list[Message] = []
     owner.receive = lambda link, message: kept.append(message)  # type: ignore[method-assign]
     link = Inbound(owner, driver, FastTcp(Route("/peer", "/here", "fast_tcp")))
-    answers = link.receiver._reply
+    answers = link.receiver.reply
     link.serve()
     assert transport.closed
     with pytest.raises(LinkClosed):

@@ -13,7 +13,9 @@ from typing import TYPE_CHECKING
 
 from yarpy.carriers.base import Carrier
 from yarpy.data.bottle import Bottle
+from yarpy.data.yarp4 import is_yarp4
 from yarpy.errors import (
+    DecodeError,
     LinkClosed,
     LocalProtocolError,
     RemoteProtocolError,
@@ -27,7 +29,7 @@ from yarpy.link.send.slow_reader import STRANGERS
 from yarpy.log import logger
 from yarpy.wire.aside_stream import AsideStream
 from yarpy.wire.effects import Claim, Flush, May, Show, Within
-from yarpy.wire.message import CALL, DATA, Answer, Message, mark_unsent
+from yarpy.wire.message import CALL, DATA, Answer, Message, in_yarp4, mark_unsent
 from yarpy.wire.stream import LARGE, ByteStream
 
 if TYPE_CHECKING:
@@ -41,6 +43,7 @@ log = logger("yarpy.link")
 MAX_UNSENT_ACKS = 64
 # How far a message is that is held: read, counted, let through by monitors, acknowledged or asked.
 FRESH, COUNTED, PASSED, SETTLED = range(4)
+TELLING = 1 << 16  # bytes of a question that is looked through
 LEAST = 1 << 16  # bytes of answers that a peer must take within STRANGERS seconds
 
 
@@ -64,6 +67,10 @@ class Receiver:
         self._cut = False  # the steps that read a message were interrupted, and are gone
         self.spare: Message | None = None
         self.question: Answer | None = None  # open: nothing is read before it is answered
+        self.yarp4 = False  # answers are spelled as YARP 4 does
+        #: nothing that the peer has said tells how to spell them
+        self._unsure = carrier.spelling == "binary" and not carrier.reaches.foreign
+        self.guess: Callable[[], bool] = _older  # whether it is of YARP 4, then
         self._steps: Steps[Message] | None = None
         self._parses = type(carrier).parse is not Carrier.parse
         self.incoming = Incoming(
@@ -285,8 +292,22 @@ class Receiver:
         """Give a question its way back; False if `message` is none."""
         if message.key != CALL or not self.carrier.replies:
             return False
-        self.question = message.answer = Answer(self._reply)
+        self.question = message.answer = Answer(self)
+        if self._unsure:
+            self._learn(message)
         return True
+
+    def _learn(self, message: Message) -> None:
+        """Find out by a question how to spell the answers. Where it holds no floats, one that is
+        decoded later may tell (`Answer.note_yarp4`)."""
+        found = None
+        if message.spelling == "binary" and len(message.payload) <= TELLING:
+            try:
+                found = is_yarp4(message.payload)
+            except DecodeError:
+                pass
+        self.yarp4 = self.guess() if found is None else found
+        self._unsure = found is None and self.yarp4
 
     def settle(self, message: Message) -> bool:
         """The port is done with `message`: it is acknowledged, or, if still open, answered. Return
@@ -304,7 +325,7 @@ class Receiver:
             # empty answer.
             try:
                 if self.carrier.spelling != "text" and not self.carrier.delivery.lossy:
-                    self._reply(Bottle())
+                    self.reply(Bottle())
                     return True
                 self.question = None
             finally:
@@ -344,11 +365,14 @@ class Receiver:
             carrier.encode_ack(stream, 2 if getattr(answered, "is_last", False) else 1)
         self._flush()
 
-    def _reply(self, value: object) -> None:
+    def reply(self, value: object) -> None:
+        """Answer the open question."""
         driver, stream = self.driver, self.driver.stream
         if self._unsent_acks:
             self._owe_acks()
         try:
+            if self.yarp4:
+                value = in_yarp4(value)
             self.carrier.encode_reply(stream, value)
         except Exception as error:
             mark_unsent(error)  # which leaves the question open
@@ -444,6 +468,11 @@ class Receiver:
         if self._unsent_acks:
             self.carrier.encode_ack(self.driver.stream, self._unsent_acks)
             self._unsent_acks = 0
+
+
+def _older() -> bool:
+    """Nobody says that peers are of YARP 4."""
+    return False
 
 
 def _no_page(path: str, fields: Mapping[str, str]) -> None:

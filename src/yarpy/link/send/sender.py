@@ -63,7 +63,7 @@ class Sender:
         self.carrier = carrier
         self.route: Route = carrier.route
         self.counter = Counter(since=time.time())
-        #: the reader may be of YARP 4; a group of them may be of both
+        #: the reader may be of YARP 4; a group of them may be of both, which `Outputs` knows
         self.respells = carrier.spelling == "binary" and not carrier.delivery.broadcast
         self.chain: Chain | None = None  # the monitors that ride on it
         self.late = 0  # messages that were not sent since their deadline had come

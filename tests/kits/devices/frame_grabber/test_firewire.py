@@ -5,6 +5,7 @@ from typing import Any
 
 import pytest
 from support.camera import FakeCamera
+from support.way_back import way_back
 
 from yarpy.data.bottle import Bottle
 from yarpy.data.sig.image import Image
@@ -23,7 +24,7 @@ from yarpy.kits.devices.frame_grabber.yarp4.functions import FrameGrabberMsgs
 from yarpy.kits.devices.frame_grabber.yarp4.requests import FunctionRequests
 from yarpy.kits.devices.frame_grabber.yarp4.server import Functions
 from yarpy.kits.devices.refusal import Complaints, Refused
-from yarpy.wire.message import CALL, Answer, Message
+from yarpy.wire.message import CALL, Message
 
 
 class Eye:
@@ -91,7 +92,7 @@ class Calls:
     def ask(self, request: Any, timeout: float | None = None) -> Message:
         message = Message(CALL, b"".join(request.to_wire()))
         message.source = "/client"
-        message.answer = Answer(lambda value: None)
+        message.answer = way_back()
         return Message("D", b"".join(self._server(message).to_wire()))
 
 

@@ -4,6 +4,7 @@ from typing import Any
 
 import pytest
 from support.board import FakeBoard
+from support.way_back import way_back
 from support.yarp4 import recorded
 
 from yarpy.data.bottle import Bottle
@@ -14,7 +15,7 @@ from yarpy.kits.devices.control_board.board import Board
 from yarpy.kits.devices.control_board.yarp4.functions import ControlBoardMsgs
 from yarpy.kits.devices.control_board.yarp4.server import Functions
 from yarpy.kits.devices.simulated.joints import SimulatedJoints
-from yarpy.wire.message import CALL, Answer, Message
+from yarpy.wire.message import CALL, Message
 
 ROWS = recorded("board")["client"]
 
@@ -82,7 +83,7 @@ class Head:
 def ask(server: Any, request: bytes) -> bytes:
     message = Message(CALL, request)
     message.source = "/client"
-    message.answer = Answer(lambda value: None)
+    message.answer = way_back()
     return b"".join(server(message).to_wire())
 
 

@@ -6,6 +6,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from support.way_back import way_back
 from support.yarp4 import recorded
 
 from yarpy.data.bottle import Bottle
@@ -17,7 +18,7 @@ from yarpy.kits.devices.frame_grabber.yarp4.functions import FrameGrabberMsgs
 from yarpy.kits.devices.frame_grabber.yarp4.server import Functions, blank
 from yarpy.kits.devices.refusal import Complaints
 from yarpy.kits.thrift.structure import default_of
-from yarpy.wire.message import CALL, Answer, Message
+from yarpy.wire.message import CALL, Message
 
 
 class Eye:
@@ -51,7 +52,7 @@ def served(device: object) -> Functions:
 def ask(server: Any, request: bytes) -> bytes:
     message = Message(CALL, request)
     message.source = "/client"
-    message.answer = Answer(lambda value: None)
+    message.answer = way_back()
     return b"".join(server(message).to_wire())
 
 
