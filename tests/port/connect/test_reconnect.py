@@ -17,6 +17,7 @@ from support.wait import HANG, wait_until
 
 import yarpy
 from yarpy.port.connect import connecting, disconnecting, identity, probe, reconnect
+from yarpy.port.connect.lost import CALM, Lost
 from yarpy.route import Route
 
 RECOVERY = 20.0  # generous on a busy machine; the goal is 2 s, and the benchmark tells
@@ -396,9 +397,9 @@ def test_nothing_is_dialled_for_a_port_that_is_closed(names: yarpy.LocalNames) -
     assert reconnect.pending(port._hub) == []
 
 
-def lost(names: yarpy.LocalNames, port: yarpy.Port) -> reconnect._Lost:
+def lost(names: yarpy.LocalNames, port: yarpy.Port) -> Lost:
     """A connection of `port` to `/in`, which has failed."""
-    return reconnect._Lost(port._hub, Route(port.name, "/in", "tcp", peer="/in"), incoming=False)
+    return Lost(port._hub, Route(port.name, "/in", "tcp", peer="/in"), incoming=False)
 
 
 def test_senders_that_are_waited_for_are_limited(
@@ -441,26 +442,6 @@ def test_what_breaks_while_it_is_made_is_not_forgotten(
         port.connect("/in", "tcp")
         [left] = reconnect.pending(port._hub)
         assert str(left.spec) == "tcp"
-
-
-def test_pauses_grow(names: yarpy.LocalNames) -> None:
-    """A dead port is dialled at once at first, and then ever more rarely, by chance."""
-    with yarpy.Port("/out", names=names) as out:
-        item = lost(names, out)
-        now, pauses = 0.0, []
-        while now < 600.0:
-            item.put_off(now)
-            pauses.append(item.due - now)
-            now = item.due
-        assert pauses[0] < 0.2
-        for early, late in zip(pauses, pauses[7:], strict=False):
-            assert late > min(2 * early, 29.9), "beyond what chance does"
-        assert len(pauses) < 60, "in ten minutes"
-        assert 30.0 <= pauses[-1] <= 30.0 * reconnect.SLOWER
-        item.pause = reconnect.LOCKED
-        for _ in range(3):
-            item.put_off(0.0)
-            assert item.due >= reconnect.LOCKED, "a camera that locks out is asked no sooner"
 
 
 def test_why_something_stays_away_is_logged_once(
@@ -571,3 +552,58 @@ def test_no_signal_handler_leaves_the_watch_locked(names: yarpy.LocalNames) -> N
 
             assert elsewhere(others), f"moment {number}"
     assert number > 10
+
+
+SENDER = Route("/out", "/in", "tcp")
+
+
+def back(port: yarpy.Port) -> Lost:
+    """An input of `port` whose sender was gone, and lives again."""
+    return Lost(port._hub, SENDER, incoming=True, seen_gone=True)
+
+
+def test_a_sender_that_begins_anew_may_dial_by_itself(names: yarpy.LocalNames) -> None:
+    """Of two connections one ends, with what is on its way: it is not asked at once."""
+    reconnector = reconnect.Reconnector()
+    with yarpy.Port("/in", names=names) as port:
+        item = back(port)
+        assert not reconnector._ask_sender(item), "nobody is there"
+        with yarpy.Port("/out", names=names) as out:
+            assert not reconnector._ask_sender(item)
+            item.put_off(time.perf_counter())
+            assert not out.outputs and item.due == (item.back or 0.0) + CALM
+            assert item.back is not None
+            item.back -= CALM
+            assert reconnector._ask_sender(item)
+            wait_until(lambda: port.inputs)
+        wait_until(lambda: not port.inputs)
+        assert not reconnector._ask_sender(item) and item.back is None, "it is gone once more"
+
+
+def test_a_sender_that_dials_while_it_answers_is_not_asked(
+    names: yarpy.LocalNames, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    asked: list[object] = []
+    ask = probe.Visit.ask
+
+    def dials(visit: probe.Visit, question: Any) -> Any:
+        asked.append(question[0])
+        answer = ask(visit, question)
+        out.connect("/in")
+        wait_until(lambda: port.inputs)
+        return answer
+
+    monkeypatch.setattr(probe.Visit, "ask", dials)
+    with yarpy.Port("/in", names=names) as port, yarpy.Port("/out", names=names) as out:
+        item = back(port)
+        item.back = time.perf_counter() - CALM
+        assert reconnect.Reconnector()._ask_sender(item)
+    assert asked == [yarpy.Vocab("list")]
+
+
+def test_a_port_that_got_the_number_of_a_sender_is_not_asked(names: yarpy.LocalNames) -> None:
+    with yarpy.Port("/in", names=names) as port, yarpy.Port("/other", names=names) as other:
+        names.register("/out", "tcp", "127.0.0.1", other.contact.port)
+        item = back(port)
+        item.back = 0.0
+        assert not reconnect.Reconnector()._ask_sender(item) and item.back is None

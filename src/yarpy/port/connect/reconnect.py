@@ -12,24 +12,23 @@ sender, once that is back.
 from __future__ import annotations
 
 import math
-import random
 import threading
 import time
 from collections.abc import Callable
-from dataclasses import dataclass, field
+from contextlib import closing
 from functools import partial
 from typing import Final
 
-from yarpy.contact import parse_contact
+from yarpy.contact import Contact, parse_contact
 from yarpy.data.value import Vocab
 from yarpy.errors import AccessRefused, RemoteProtocolError, WrongPort, YarpError
-from yarpy.link.begin.handshake import find_carrier
 from yarpy.link.send.outbound import Outbound
 from yarpy.log import logger
 from yarpy.port.answer.ping import Pings
 from yarpy.port.connect import connecting, disconnecting, identity, probe
 from yarpy.port.connect.choosing import MEMORY, choose
 from yarpy.port.connect.dialling import Attempts
+from yarpy.port.connect.lost import TICK, Lost, is_pulled
 from yarpy.port.hub import Hub
 from yarpy.port.keep.keepalive import Keepalive, Link
 from yarpy.port.keep.server_watch import ServerWatch
@@ -39,47 +38,11 @@ from yarpy.threads import Thread
 
 log = logger("yarpy.port")
 
-TICK: Final = 0.1  # seconds between looks at what is broken
 CALM: Final = 0.5  # seconds between looks when nothing is
 LOCKED: Final = 60.0  # seconds between two logins: cameras lock those out who try too often
-LONGEST: Final = 30.0  # seconds between attempts at something that stays away
-SILENCE: Final = (
-    1.0  # seconds for a first answer; a dead host gives none, and its name may be elsewhere
-)
-SLOWER: Final = 1.3  # so much longer is each pause than the one before, and up to so much by chance
 INPUT_TIMEOUT: Final = 60.0  # seconds for a sender that vanished to come back
 GOODBYE: Final = 1.0  # seconds between a goodbye and the end that it was for
 MOST_SENDERS: Final = 200  # of one port that are waited for
-
-
-@dataclass(slots=True, eq=False)
-class _Lost:
-    """A connection that failed."""
-
-    hub: Hub
-    route: Route
-    incoming: bool
-    # On Windows time.monotonic goes on every 15 ms, which would not tell what was first.
-    since: float = field(default_factory=time.perf_counter)
-    pause: float = TICK
-    due: float = 0.0
-    timeout: float = SILENCE  # twice as long after each one: a port that is alive may be slow
-    seen_gone: bool = False
-    told: str = ""  # what was logged last: each reason is told once, not at every attempt
-
-    def put_off(self, now: float) -> None:
-        """Another attempt later; each pause is longer than the one before."""
-        self.due = now + self.pause * random.uniform(1.0, SLOWER)
-        self.pause = min(self.pause * SLOWER, max(self.pause, LONGEST))
-
-    def tell(self, reason: YarpError, then: str) -> None:
-        """Log why it does not come back, and what happens `then`."""
-        if str(reason) != self.told:
-            self.told = str(reason)
-            way = "from" if self.incoming else "to"
-            log.warning(
-                "%s: no connection %s %s: %s; %s", self.hub.name, way, _peer(self), reason, then
-            )
 
 
 class Reconnector:
@@ -90,7 +53,7 @@ class Reconnector:
 
     def _begin(self) -> None:
         self._hubs: list[Hub] = []
-        self._lost: list[_Lost] = []
+        self._lost: list[Lost] = []
         self._attempts = Attempts("dial")
         self._reports = Attempts("end outputs of")
         self._keepalive = Keepalive(self._died)
@@ -138,7 +101,7 @@ class Reconnector:
         if last:
             self._wake.wake()
 
-    def _keep(self, stays: Callable[[_Lost], bool]) -> bool:
+    def _keep(self, stays: Callable[[Lost], bool]) -> bool:
         """Forget what does not stay, and what a signal handler forgets meanwhile; return whether
         there was any."""
         while True:
@@ -155,21 +118,21 @@ class Reconnector:
                 return  # `forget` may have been here already
             if incoming and self._is_over(hub, route.source):
                 return
-            added = _Lost(hub, route, incoming, seen_gone=gone)
-            if incoming and not _is_pulled(route):
+            added = Lost(hub, route, incoming, seen_gone=gone)
+            if incoming and not is_pulled(route):
                 self._make_room(added)
             self._lost = [*self._lost, added]
         self._wake.wake()
 
-    def _make_room(self, added: _Lost) -> None:
+    def _make_room(self, added: Lost) -> None:
         """Forget the same input from before, and the oldest where there are too many: whoever
         connects under new names again and again must not keep us busy."""
         inputs = [
             item
             for item in self._lost
-            if item.incoming and item.hub is added.hub and not _is_pulled(item.route)
+            if item.incoming and item.hub is added.hub and not is_pulled(item.route)
         ]
-        over = {item for item in inputs if _peer(item) == _peer(added)}
+        over = {item for item in inputs if item.peer == added.peer}
         if not over and len(inputs) >= MOST_SENDERS:
             over = {inputs[0]}
         self._keep(lambda item: item not in over)
@@ -181,8 +144,8 @@ class Reconnector:
         `incoming` tells, if it was lost `before` that time (of time.perf_counter); whether it was
         being tried again."""
 
-        def meant(item: _Lost) -> bool:
-            this = item.hub is hub and _peer(item) == name and item.since < before
+        def meant(item: Lost) -> bool:
+            this = item.hub is hub and item.peer == name and item.since < before
             return this and incoming in (None, item.incoming)
 
         with self._lock:
@@ -251,14 +214,14 @@ class Reconnector:
 
     # -- one connection ---------------------------------------------------------------------------
 
-    def _dial(self, lost: list[_Lost]) -> None:
+    def _dial(self, lost: list[Lost]) -> None:
         """Begin what is due; of those that want the same port, one at a time."""
         now = time.perf_counter()
         for item in lost:
             if item.due <= now and not item.hub.life.closing:
-                self._attempts.begin(_peer(item), partial(self._attempt, item))
+                self._attempts.begin(item.peer, partial(self._attempt, item))
 
-    def _attempt(self, item: _Lost) -> None:
+    def _attempt(self, item: Lost) -> None:
         """Try once to have it back."""
         done = False
         try:
@@ -278,42 +241,43 @@ class Reconnector:
         finally:
             now = time.perf_counter()
             waited = now - item.since > INPUT_TIMEOUT
-            if done or (waited and item.incoming and not _is_pulled(item.route)):
+            if done or (waited and item.incoming and not is_pulled(item.route)):
                 with self._lock:
                     self._keep(lambda other: other is not item)
             else:
                 item.put_off(now)
 
-    def _ask_sender(self, item: _Lost) -> bool:
-        """Ask the sender, once it lives again, to send to us as before."""
+    def _ask_sender(self, item: Lost) -> bool:
+        """Ask the sender, once it lives again, to send to us as before. It is given the time to
+        dial us by itself: of two connections one ends, with what is on its way."""
         hub, route = item.hub, item.route
-        if _is_there(item):
+        if item.is_there():
             return True
-        if _is_pulled(route):
+        if is_pulled(route):
             return self._dial_again(item, route.source)
         contact = hub.names.query(route.source) if hub.names is not None else None
-        if contact is None or not probe.is_alive(contact, hub.key):
-            item.seen_gone = True
+        visit = None if contact is None else _visit(contact, hub.key)
+        if visit is None:
+            item.seen_gone, item.back = True, None
             return False
-        if not item.seen_gone and time.perf_counter() - item.since < CALM:
-            return False  # it is still there: give it the time to dial us by itself
-        listed = probe.ask(contact, [Vocab("list"), Vocab("out")], secret_=hub.key)
-        if hub.name in listed:
-            return True
-        if route.spec.log is not None:
-            return True
-        # What a sender has chosen by itself, it chooses again.
-        way = "" if route.spec.base == MEMORY else f"{route.spec.whole}:/"
-        probe.ask(contact, [Vocab("add"), way + hub.name], secret_=hub.key)
+        with closing(visit):
+            if not item.is_calm(time.perf_counter()):
+                return False
+            if hub.name in visit.ask([Vocab("list"), Vocab("out")]) or route.spec.log is not None:
+                return True
+            # What a sender has chosen by itself, it chooses again.
+            way = "" if route.spec.base == MEMORY else f"{route.spec.whole}:/"
+            if not item.is_there():  # it may have dialled us while it answered
+                visit.ask([Vocab("add"), way + hub.name])
         return True
 
-    def _dial_again(self, item: _Lost, peer: str) -> bool:
+    def _dial_again(self, item: Lost, peer: str) -> bool:
         """Dial a receiver, or a camera that we fetch from, once more; not if somebody else does."""
         hub, route = item.hub, item.route
         with hub.callbacks.later(), hub.dialling.alone(peer, wait=False) as alone:
             if not alone:
                 return False
-            if item not in self._lost or _is_there(item):
+            if item not in self._lost or item.is_there():
                 return True
             contact = hub.registration.locate(parse_contact(peer))
             if contact is None:
@@ -333,21 +297,19 @@ class Reconnector:
         return True
 
 
-def _peer(item: _Lost) -> str:
-    return item.route.source if item.incoming else item.route.target
-
-
-def _is_there(item: _Lost) -> bool:
-    """Return whether there is such a connection already."""
-    hub, route = item.hub, item.route
-    if item.incoming:
-        return any(link.route.source == route.source for link in hub.inputs.links)
-    return any(link.route.target == route.target for link in hub.outputs.links)
-
-
-def _is_pulled(route: Route) -> bool:
-    """Return whether the receiver of such a connection is the one that dials."""
-    return not find_carrier(route.spec).push
+def _visit(contact: Contact, key: bytes) -> probe.Visit | None:
+    """Return a connection to the port of that name; None if it does not answer there."""
+    try:
+        visit = probe.Visit(contact, secret_=key)
+    except (YarpError, OSError):
+        return None
+    try:
+        if visit.name() == contact.name:
+            return visit
+    except (YarpError, OSError):
+        pass
+    visit.close()
+    return None
 
 
 RECONNECTOR: Final = Reconnector()
@@ -371,11 +333,11 @@ def output_lost(hub: Hub, route: Route) -> None:
 
 def input_lost(hub: Hub, route: Route, gone: bool = False) -> None:
     """An input ended without a goodbye; `gone`: its sender knows nothing of it any more."""
-    if _is_pulled(route) and route.declared.topic:
+    if is_pulled(route) and route.declared.topic:
         return  # its node dials publishers again
-    if _is_pulled(route) and not identity.has_proof(route):
+    if is_pulled(route) and not identity.has_proof(route):
         _leave(hub, "from", route.source)
-    elif _is_pulled(route) or (route.source.startswith("/") and not _is_address(route.source)):
+    elif is_pulled(route) or (route.source.startswith("/") and not _is_address(route.source)):
         RECONNECTOR.add(hub, route, incoming=True, gone=gone)
 
 
