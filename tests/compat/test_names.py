@@ -1,6 +1,7 @@
 """Names that programs of YARP 3.9.1 and 4.0.0 import: integers, priorities, maps, pixels."""
 
 import pytest
+from support.system import NO_MARKS
 from support.wait import wait_until
 
 import yarp
@@ -28,6 +29,7 @@ def test_qos_style() -> None:
     assert yarp.QosStyle.getLevelByVocab(yarp.encode("CRIT")) == 44
 
 
+@pytest.mark.skipif(bool(NO_MARKS), reason=NO_MARKS)
 def test_priority_of_a_connection() -> None:
     yarp.Network.setLocalMode(True)
     out, into = yarp.Port(), yarp.BufferedPortBottle()

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import ast
+import os
 import subprocess
 import sys
 from collections.abc import Mapping
@@ -83,6 +84,7 @@ def test_import_loads_nothing_heavy(environment: Mapping[str, str]) -> None:
     assert run(code, environment).strip() == "[]"
 
 
+@pytest.mark.skipif(not hasattr(os, "fork"), reason="Windows has no fork")
 def test_import_starts_no_thread_and_a_fork_works(environment: Mapping[str, str]) -> None:
     code = """
 import os, threading, yarp

@@ -1,5 +1,7 @@
 """Vectors and places in them, sounds, matrices, words of 64 bits, variables, the log."""
 
+import sys
+
 import pytest
 
 import yarp
@@ -73,11 +75,13 @@ def test_variables_and_directories(monkeypatch) -> None:
     for name in ("YARP_DATA_HOME", "XDG_DATA_HOME", "YARP_CONFIG_DIRS"):
         monkeypatch.delenv(name, raising=False)
     monkeypatch.setenv("HOME", "/somebody")
-    monkeypatch.setenv("XDG_CONFIG_DIRS", "/etc/a:/etc/b")
-    assert yarp.yarpdatahome() == "/somebody/.local/share/yarp"
-    assert [*yarp.yarpconfigdirs()] == ["/etc/a/yarp", "/etc/b/yarp"]
+    if sys.platform == "linux":  # the only one with these variables
+        monkeypatch.setenv("XDG_CONFIG_DIRS", "/etc/a:/etc/b")
+        assert yarp.yarpdatahome() == "/somebody/.local/share/yarp"
+        assert [*yarp.yarpconfigdirs()] == ["/etc/a/yarp", "/etc/b/yarp"]
+        assert yarp.datahome() == "/somebody/.local/share"
     monkeypatch.setenv("YARP_DATA_HOME", "/data")
-    assert yarp.yarpdatahome() == "/data" and yarp.datahome() == "/somebody/.local/share"
+    assert yarp.yarpdatahome() == "/data"
     monkeypatch.setenv("THIS_TEST", "yes")
     found = yarp.BVector(1)
     assert yarp.get_string("THIS_TEST", found) == "yes" and found[0]

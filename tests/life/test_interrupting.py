@@ -7,10 +7,12 @@ from __future__ import annotations
 
 import pytest
 from life.interrupting import CARRIERS, SIZES, interrupt_reader
+from support.system import NO_TIMER
 
 RUNS = [*((carrier, "strict") for carrier in CARRIERS), ("tcp", "plain"), ("tcp", "buffered")]
 
 
+@pytest.mark.skipif(bool(NO_TIMER), reason=NO_TIMER)
 @pytest.mark.parametrize("size", SIZES)
 @pytest.mark.parametrize(("carrier", "reader"), RUNS)
 def test_reader_goes_on_after_interrupts(carrier: str, reader: str, size: int) -> None:

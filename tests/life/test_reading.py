@@ -12,6 +12,7 @@ from contextlib import contextmanager
 from types import FrameType
 
 import pytest
+from support.system import NO_POLICIES, NO_TIMER
 from support.wait import HANG
 
 from yarpy.errors import LocalProtocolError, PortClosed
@@ -99,6 +100,7 @@ def test_closed_port_says_what_it_was(names: LocalNames) -> None:
     assert port.address
 
 
+@pytest.mark.skipif(bool(NO_TIMER), reason=NO_TIMER)
 @pytest.mark.parametrize("act", [TimeoutError, KeyboardInterrupt, ValueError])
 def test_what_a_signal_handler_raises_comes_out_of_read(
     act: type[BaseException], names: LocalNames
@@ -116,6 +118,7 @@ def test_what_a_signal_handler_raises_comes_out_of_read(
         assert len(in_.inputs) == 1
 
 
+@pytest.mark.skipif(bool(NO_TIMER), reason=NO_TIMER)
 @pytest.mark.parametrize("end", [Port.close, Port.interrupt])
 def test_signal_handler_may_end_the_port_that_is_read(
     end: Callable[[Port], object], names: LocalNames
@@ -135,6 +138,7 @@ def test_signal_handler_may_end_the_port_that_is_read(
         assert 0.0 < took < 2.0  # nobody waits for the frame beneath
 
 
+@pytest.mark.skipif(bool(NO_TIMER), reason=NO_TIMER)
 def test_signal_handler_that_reads_what_is_read_beneath_is_told(names: LocalNames) -> None:
     found: list[BaseException] = []
 
@@ -206,6 +210,7 @@ print("all came")
 """
 
 
+@pytest.mark.skipif(bool(NO_POLICIES), reason=NO_POLICIES)
 def test_spinning_with_a_real_time_priority_leaves_room_for_its_program() -> None:
     """On one core, where a thread that never gives way keeps all others from it."""
     words = [sys.executable, "-c", SPINNING]

@@ -7,7 +7,6 @@ import os
 import queue
 import subprocess
 import sys
-from collections import deque
 
 import pytest
 from support.wait import HANG
@@ -46,21 +45,52 @@ def test_letters_of_a_terminal_come_at_once() -> None:
         assert said.splitlines() == [ascii(letter) for letter in "s \x1b[Cä"]
 
 
+# A console of its own, and in it what a keyboard would have put there: letters, an arrow to the
+# right, F1, and an à, which begins as arrows do.
+CONSOLE = """
+import ctypes, sys
+from ctypes import wintypes
+from yarpy.platform.keys import keys
+
+class Key(ctypes.Structure):
+    _fields_ = [("kind", wintypes.DWORD), ("down", wintypes.BOOL), ("count", wintypes.WORD),
+        ("key", wintypes.WORD), ("scan", wintypes.WORD), ("letter", wintypes.WCHAR),
+        ("state", wintypes.DWORD)]
+
+kernel = ctypes.WinDLL("kernel32")
+kernel.CreateFileW.restype = ctypes.c_void_p
+console = ctypes.c_void_p(kernel.CreateFileW("CONIN$", 0xC0000000, 3, None, 3, 0, None))
+
+def press(letter, key=0, scan=0, state=0):
+    for down in (1, 0):
+        one = Key(1, down, 1, key, scan, letter, state)
+        count = wintypes.DWORD()
+        assert kernel.WriteConsoleInputW(console, ctypes.byref(one), 1, ctypes.byref(count))
+
+sys.stdin = open("CONIN$")
+with keys() as pressed:
+    press("s", 0x53, 0x1F)
+    press("\\0", 0x27, 0x4D, 0x100)
+    press("\\0", 0x70, 0x3B)
+    press("\\xe0")
+    print(ascii([pressed.get(timeout=60) for _ in range(5)]), flush=True)
+    press("q", 0x51, 0x10)
+    print(pressed.get(timeout=60), flush=True)
+press("x")  # for whoever reads it next
+assert pressed.empty()
+print("over", flush=True)
+"""
+
+
 @pytest.mark.skipif(sys.platform != "win32", reason="only Windows has a console of this kind")
-def test_arrows_of_a_console_are_those_of_a_terminal(monkeypatch: pytest.MonkeyPatch) -> None:
-    """What the console would have, since nobody can type into that of a test."""
-    import msvcrt
-
-    class Console(io.StringIO):
-        def isatty(self) -> bool:
-            return True
-
-    typed = deque(["s", "\xe0", "M", "\x00", ";", "\xe0", "K", "q"])  # F1 is none of ours
-    monkeypatch.setattr(sys, "stdin", Console())
-    monkeypatch.setattr(msvcrt, "kbhit", lambda: bool(typed))
-    monkeypatch.setattr(msvcrt, "getwch", typed.popleft)
-    with keys() as pressed:
-        found = "".join(pressed.get(timeout=HANG) for _ in "s\x1b[C\x1b[Dq")
-    assert found == "s\x1b[C\x1b[Dq" and not typed
-    typed.append("x")  # for whoever reads it next
-    assert pressed.empty() and typed
+def test_keys_of_a_console_are_those_of_a_terminal() -> None:
+    done = subprocess.run(
+        [sys.executable, "-c", CONSOLE],
+        input="",
+        stdout=subprocess.PIPE,
+        stderr=subprocess.STDOUT,
+        text=True,
+        timeout=HANG,
+        creationflags=getattr(subprocess, "CREATE_NO_WINDOW", 0),
+    )
+    assert done.stdout.splitlines() == [ascii([*"s\x1b[C\xe0"]), "q", "over"], done.stdout

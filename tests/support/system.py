@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import ctypes
 import os
+import signal
 import socket
 import sys
 from typing import Final
@@ -38,6 +39,7 @@ NO_OWNERS: Final = (
     if sys.platform == "darwin"
     else ""
 )
+NO_TIMER: Final = "" if hasattr(signal, "SIGALRM") else "Windows has no timer that sends signals"
 NO_GROUPS: Final = (
     ""
     if sys.platform != "win32"

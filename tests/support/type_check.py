@@ -35,6 +35,7 @@ def type_check(
     folder: Path, *files: str, env: Mapping[str, str] = os.environ, options: Sequence[str] = STRICT
 ) -> subprocess.CompletedProcess[str]:
     """What mypy says about files in a folder."""
+    pytest.importorskip("mypy", reason="mypy reads it: pip install mypy")
     cache = CACHE / ("strict" if options == STRICT else "loose")
     return subprocess.run(
         [sys.executable, "-m", "mypy", *options, "--cache-dir", str(cache), *files],

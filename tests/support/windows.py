@@ -93,6 +93,7 @@ WHEELS = (
     "pynacl",
     "pyserial",
     "paho-mqtt",
+    "pyzmq",
 )
 TESTING = ("pytest", "pytest-timeout", "hypothesis")
 LIMIT = 240.0  # seconds for a file
@@ -108,7 +109,7 @@ def prepare() -> Path:
     """
     if shutil.which("wine") is None:
         raise MissingPeer("no wine here: apt-get install wine wine64")
-    folder = peers_directory() / "windows-cpython-3.11.9-5"
+    folder = peers_directory() / "windows-cpython-3.11.9-6"
     folder.mkdir(parents=True, exist_ok=True)
     with (folder / "lock").open("w") as lock:
         hold(lock)
@@ -224,12 +225,14 @@ def _is_left(pid: int) -> bool:
 
 
 def interpreter(folder: Path) -> list[str]:
-    """Return the command of the Python of Windows that imports this checkout."""
-    lines = ["python311.zip", ".", path_of(folder / "site")]
-    lines += [path_of(ROOT / "src"), path_of(ROOT / "tests"), "import site", ""]
-    paths = folder / "python" / "python311._pth"
-    if not paths.exists() or paths.read_text() != "\n".join(lines):
-        paths.write_text("\n".join(lines))
+    """Return the command of the Python of Windows that imports this checkout. Its file of paths,
+    which only the embeddable one has, is taken away: with it, it would be isolated."""
+    (folder / "python" / "python311._pth").unlink(missing_ok=True)
+    text = "\n".join(path_of(one) for one in (folder / "site", ROOT / "src", ROOT / "tests")) + "\n"
+    paths = folder / "python" / "Lib" / "site-packages" / "checkout.pth"
+    if not paths.exists() or paths.read_text() != text:
+        paths.parent.mkdir(parents=True, exist_ok=True)
+        paths.write_text(text)
     return ["wine", str(folder / "python" / "python.exe")]
 
 

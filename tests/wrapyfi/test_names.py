@@ -12,7 +12,6 @@ from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
-import zmq
 from support.peer import brings
 from support.port import free_block
 from support.process import Process
@@ -20,6 +19,8 @@ from support.wait import wait_until
 from support.wrapyfi_venv import prepare
 
 import yarpy
+
+zmq = pytest.importorskip("zmq", reason="needs pyzmq (pip install pyzmq)")
 
 SOURCE = Path(__file__).parents[2] / "compat" / "wrapyfi" / "src"
 

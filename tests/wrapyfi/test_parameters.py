@@ -8,18 +8,21 @@ from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
-import zmq
 from support.peer import brings
 from support.port import free_block
 from support.process import Process
 from support.wait import HANG
 from support.wrapyfi_venv import prepare
 
-from wrapyfi.middlewares._parameters import (  # type: ignore[import-not-found]
+zmq = pytest.importorskip("zmq", reason="needs pyzmq (pip install pyzmq)")
+
+from wrapyfi.middlewares._parameters import (  # type: ignore[import-not-found]  # noqa: E402
     Parameters,
     ZeroMQMiddlewareParamServer,
 )
-from wrapyfi.standalone import zeromq_param_server as program  # type: ignore[import-not-found]
+from wrapyfi.standalone import (  # type: ignore[import-not-found]  # noqa: E402
+    zeromq_param_server as program,
+)
 
 SOURCE = Path(__file__).parents[2] / "compat" / "wrapyfi" / "src"
 UNKNOWN = "error:::parameter does not exist"

@@ -13,6 +13,7 @@ from collections.abc import Callable, Iterable
 from typing import Any, Final
 
 from yarpy.log import readable
+from yarpy.platform.console import is_unread
 
 _NUMBERS: Final = {
     "TRACE": 5, "DEBUG": 10, "INFO": 20, "WARNING": 30, "ERROR": 40, "FATAL": 50
@@ -66,7 +67,9 @@ def print_lines(lines: Iterable[str]) -> None:
     """Print what a command was asked for. Who reads only the beginning, as `head` does, may go."""
     try:
         print(*lines, sep="\n", flush=True)
-    except BrokenPipeError:
+    except OSError as error:
+        if not is_unread(error):
+            raise
         sys.stdout = None  # nothing more to flush at exit
 
 

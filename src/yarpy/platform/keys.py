@@ -48,7 +48,7 @@ if sys.platform == "win32":
         while not over.wait(_LOOK):
             while kbhit() and not over.is_set():
                 key = getwch()
-                if key in _BEGINNINGS:  # and there is more
+                if key in _BEGINNINGS and kbhit():  # alone it is an à
                     key = ARROWS.get(getwch(), "")
                 for letter in key:
                     pressed.put(letter)

@@ -11,13 +11,13 @@ from __future__ import annotations
 import socket
 import sys
 import time
-from contextlib import suppress
 from functools import partial
 from typing import Any, Final
 
 from yarpy import scope
 from yarpy.contact import Contact
 from yarpy.errors import AddressError
+from yarpy.platform.connecting import Connecting
 from yarpy.route import Route
 from yarpy.threads import Thread
 from yarpy.transports.base import Address, SocketTransport
@@ -117,9 +117,9 @@ def connected(host: str, port: int, timeout: float) -> socket.socket:
             failure = error
             continue
         try:
-            sock.settimeout(left)
-            with scope.waking(partial(_cut, sock)):
-                sock.connect(address)
+            attempt = Connecting(sock, left)
+            with scope.waking(attempt.give_up):
+                attempt.run(address)
             return sock
         except OSError as error:
             sock.close()
@@ -128,11 +128,6 @@ def connected(host: str, port: int, timeout: float) -> socket.socket:
             sock.close()
             raise
     raise failure or TimeoutError("timed out")
-
-
-def _cut(sock: socket.socket) -> None:
-    with suppress(OSError):  # the connection was not begun, or has failed
-        sock.shutdown(socket.SHUT_RDWR)
 
 
 def _addresses(host: str, port: int, limit: float) -> list[Any]:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import pytest
+from support.system import NO_MARKS
 from support.wait import HANG, wait_until
 
 import yarpy
@@ -29,6 +30,7 @@ def test_what_can_never_work_is_an_error_at_once(names: yarpy.LocalNames) -> Non
         Follower(port, "/topic", "tpc")
 
 
+@pytest.mark.skipif(bool(NO_MARKS), reason=NO_MARKS)
 def test_priorities_are_given(names: yarpy.LocalNames) -> None:
     with yarpy.BufferedPort("") as port, yarpy.Port("/topic"):
         follower = Follower(port, "/topic", qos=yarpy.Qos(packets="HIGH"))

@@ -17,6 +17,7 @@ __all__ = ["client", "lone_router", "names", "no_settings", "router", "unconfigu
 @pytest.fixture(scope="module")
 def router() -> Iterator[str]:
     """Its address; this process finds it."""
+    pytest.importorskip("zenoh", reason='Zenoh: pip install "yarpy[zenoh]"')
     from yarpy.peers.zenoh.router import open_router
     from yarpy.peers.zenoh.transport import close
 

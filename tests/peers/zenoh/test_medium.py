@@ -37,6 +37,7 @@ def test_a_router_is_no_part_of_a_key() -> None:
 
 
 def test_no_router(names: yarpy.LocalNames, monkeypatch: pytest.MonkeyPatch) -> None:
+    pytest.importorskip("zenoh", reason='Zenoh: pip install "yarpy[zenoh]"')
     monkeypatch.setenv("YARPY_ZENOH", f"tcp/127.0.0.1:{free_port()}")
     with yarpy.Port("/out") as out:
         with pytest.raises(LinkClosed, match="no Zenoh router answers"):

@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+import sys
+from pathlib import Path
+
 import pytest
 
 from yarpy.errors import (
@@ -29,12 +32,18 @@ def _nothing_configured(monkeypatch: pytest.MonkeyPatch) -> None:
         ("tcp/a:7447#iface=eth0", Place(("tcp/a:7447#iface=eth0",))),
         ("udp/a:7447?rel=0", Place(("udp/a:7447?rel=0",))),
         ("lan", Place()),
-        ("/etc/z.json5", Place(file="/etc/z.json5")),
-        ("file:///etc/z.json5", Place(file="/etc/z.json5")),
+        ("/etc/z.json5", Place(file=str(Path("/etc/z.json5")))),
+        ("file:///etc/z.json5", Place(file=str(Path("/etc/z.json5")))),
     ],
 )
 def test_places(text: str, found: Place) -> None:
     assert place(text) == found
+
+
+@pytest.mark.skipif(sys.platform != "win32", reason="only Windows has drives")
+@pytest.mark.parametrize("text", [r"C:\etc\z.json5", "C:/etc/z.json5", "file:///C:/etc/z.json5"])
+def test_a_file_of_a_drive(text: str) -> None:
+    assert place(text) == Place(file=r"C:\etc\z.json5")
 
 
 @pytest.mark.parametrize("text", ["tcp/", "ftp/a:1", "a:b", "a:70000", "a/b/c", "::1", "tcp/a:-1"])

@@ -4,7 +4,7 @@
     tcp/192.168.1.2:7447      a router; or `tls/...`, `quic/...`, or `host` or `host:port` alone
     tcp/a:7447,tcp/b:7447     one of several routers, whichever answers
     lan                       no router: the peers in the local network, found by multicast
-    /etc/robot.json5          a configuration file of Zenoh, as it is
+    /etc/robot.json5          a configuration file of Zenoh, as it is; on Windows C:\\robot.json5
 
 Rules: nothing is opened here. Where YARPY_TLS requires TLS, a place without it is refused.
 """
@@ -13,6 +13,7 @@ from __future__ import annotations
 
 import os
 import re
+import sys
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Final
@@ -26,6 +27,7 @@ LAN: Final = "lan"
 HERE: Final = f"127.0.0.1:{PORT}"
 
 _ENDPOINT = re.compile(r"(tcp|tls|quic|udp|ws|unixsock-stream)/(.+)")
+_DRIVE = re.compile(r"(?:file:///)?([A-Za-z]:[\\/].*)")
 SECURE: Final = ("tls", "quic")
 
 
@@ -51,6 +53,9 @@ def place(text: str = "") -> Place:
                 f"have: let them meet at a router, {SETTING}=tls/HOST:{PORT}"
             )
         return Place()
+    drive = _DRIVE.fullmatch(text) if sys.platform == "win32" else None
+    if drive is not None:
+        return Place(file=str(Path(drive[1])))
     if text.startswith(("/", ".", "~", "file:")):
         return Place(file=str(Path(text.removeprefix("file://")).expanduser()))
     return Place(tuple(endpoint(item) for item in re.split(r"[, ]+", text) if item))
