@@ -6,6 +6,7 @@ import sys
 import tomllib
 from pathlib import Path
 
+from support.guest import guest
 from support.wait import HANG
 
 TESTS = """
@@ -21,6 +22,9 @@ def test_programs_use_the_network_too(network):
 
 def test_each_has_its_own(network):
     assert yarpy.query("/mine") is None
+"""
+ROBOT = """
+import yarpy
 
 def test_a_robot(robot):
     with yarpy.RpcClient("/icubSim/head/rpc:i") as client:
@@ -29,7 +33,16 @@ def test_a_robot(robot):
 
 
 def test_its_fixtures(tmp_path: Path) -> None:
-    (tmp_path / "test_it.py").write_text(TESTS)
+    passes(tmp_path, TESTS, "2 passed")
+
+
+def test_its_robot(tmp_path: Path) -> None:
+    guest("sim", ring="kits")
+    passes(tmp_path, ROBOT, "1 passed")
+
+
+def passes(tmp_path: Path, tests: str, said: str) -> None:
+    (tmp_path / "test_it.py").write_text(tests)
     command = [sys.executable, "-m", "pytest", "-q", "-p", "yarpy.testing.plugin", "--rootdir", "."]
     done = subprocess.run(
         [*command, "-p", "no:cacheprovider", "test_it.py"],
@@ -39,7 +52,7 @@ def test_its_fixtures(tmp_path: Path) -> None:
         text=True,
         timeout=2 * HANG,
     )
-    assert done.returncode == 0 and "3 passed" in done.stdout, done.stdout + done.stderr
+    assert done.returncode == 0 and said in done.stdout, done.stdout + done.stderr
 
 
 def test_pytest_finds_it() -> None:
