@@ -3,6 +3,8 @@
 our client -> nws of C++ -> nwc of C++ -> our server
 """
 
+from typing import Any
+
 import pytest
 from support.cpp import CppYarp
 from support.cpp_device import cpp_device, device_host
@@ -13,7 +15,8 @@ from yarpy.kits.devices.interfaces.grid import Grid
 from yarpy.kits.devices.interfaces.localization import Localization2D
 from yarpy.kits.devices.interfaces.map2d import Map2D
 from yarpy.kits.devices.interfaces.navigation import Navigation2D
-from yarpy.kits.devices.interfaces.place import Area, Path, Place
+from yarpy.kits.devices.interfaces.place import Area, Place
+from yarpy.kits.devices.interfaces.place import Path as Route
 from yarpy.kits.devices.simulated.base import SimulatedBase
 from yarpy.kits.devices.simulated.map_storage import MapStorage
 
@@ -105,7 +108,7 @@ def test_maps(network: CppYarp) -> None:
             assert client.location("a") == Place("kitchen", 1.5, 2.0, 3.0, "there")
             client.store_area("b", Area("kitchen", [yarpy.Vector([1.0, 2.0])] * 3, "sink"))
             assert client.area("b") == Area("kitchen", [yarpy.Vector([1.0, 2.0])] * 3, "sink")
-            client.store_path("c", Path([Place("kitchen", 1.0), Place("kitchen", 2.0)]))
+            client.store_path("c", Route([Place("kitchen", 1.0), Place("kitchen", 2.0)]))
             assert [place.x for place in client.path("c").waypoints] == [1.0, 2.0]
             client.rename_location("a", "d")
             assert client.location_names() == ["d"] and client.area_names() == ["b"]
@@ -120,3 +123,41 @@ def test_maps(network: CppYarp) -> None:
                 client.location("nowhere")
             client.delete_location("d")
             assert client.location_names() == []
+
+
+def test_files_of_maps(network: CppYarp) -> None:
+    """C++ begins with what we have written, and we with what it writes."""
+    device_host(network)
+    folder = network.home / "data" / "contexts" / "lab"
+    folder.mkdir(parents=True, exist_ok=True)
+    grid = Grid.of("kitchen", [[0, 100, 255]] * 2, 0.05, (1.0, 2.0, 0.0))
+    (storage := MapStorage(folder)).store_map(grid)
+    with Map2D.serve("/ours", storage), Map2D.connect("/ours") as client:
+        client.store_location("the sink", Place("kitchen", 1.5, 2.0, 3.0))
+        client.store_area("floor", Area("kitchen", [yarpy.Vector([1.0, 2.0])] * 3))
+        client.store_path("tour", Route([Place("kitchen", 1.0), Place("kitchen", 2.0)]))
+        client.save_maps("maps_collection.ini")
+        client.save_names("locations.ini")
+    served = cpp_device(
+        network,
+        "map2D_nws_yarp",
+        subdevice="map2DStorage",  # it has a port, too, of a name of its own
+        mapCollectionContext="lab",
+    )
+    with served as process:
+        assert "not available" not in process.stdout, process.stderr
+        with Map2D.connect("/map2D_nws_yarp") as client:
+            found = client.map("kitchen")
+            assert found.cells().tolist() == [[0, 4, 5]] * 2
+            assert found.occupied().tolist() == grid.occupied().tolist()
+            assert (found.x, found.y, round(found.resolution, 6)) == (1.0, 2.0, 0.05)
+            assert client.location("the sink") == Place("kitchen", 1.5, 2.0, 3.0)
+            assert client.area("floor").points == [yarpy.Vector([1.0, 2.0])] * 3
+            assert [place.x for place in client.path("tour").waypoints] == [1.0, 2.0]
+            client.delete_location("the sink")  # it could not read that name again itself
+            client.store_location("door", Place("kitchen", 9.0))
+            client.save_names(str(folder / "theirs.ini"))
+            client.save_maps(str(folder / "their_maps.ini"))
+    again: Any = MapStorage(folder, "their_maps.ini", "theirs.ini")
+    assert again.location_names() == ["door"] and again.area_names() == ["floor"]
+    assert again.map("kitchen").cells().tolist() == grid.cells().tolist()

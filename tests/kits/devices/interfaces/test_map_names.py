@@ -76,6 +76,18 @@ def test_what_is_written_is_read_again() -> None:
     assert parse_names(spell_names(MapNames())) == MapNames()
 
 
+def test_older_programs_can_read_what_they_have_words_for() -> None:
+    names = MapNames({"door": Place("lab", 1.0)}, paths={"tour": Path([Place("lab")])})
+    assert spell_names(names) == (
+        "Version:\n2\nLocations:\ndoor lab 1.0 0.0 0.0\nAreas:\nPaths:\ntour (lab 0.0 0.0 0.0)\n"
+    )
+    names.paths["tour"].description = "round"
+    assert spell_names(names).startswith('Version:\n3\nLocations:\ndoor lab 1.0 0.0 0.0 ""\nAreas')
+    assert parse_names(spell_names(names)) == names
+    names.objects["cup"] = Thing("lab")
+    assert spell_names(names).startswith("Version:\n4\n")
+
+
 @pytest.mark.parametrize(
     ("text", "said"),
     [

@@ -14,9 +14,10 @@
     names = parse_names(text)
     text = spell_names(names)
 
-Rules: versions 1 to 4 are read; 1 has places and areas, 2 paths, 3 descriptions, 4 objects. The
-last is written. Lengths are metres, angles degrees, those of objects as they were stored. A name
-that is there twice, and a line that is not of its section, is a DecodeError with the line.
+Rules: versions 1 to 4 are read; 1 has places and areas, 2 paths, 3 descriptions, 4 objects. What is
+written is as old as can be, for older programs: C++ 3.5 reads 1 and 2, 3.9 up to 3. Lengths are
+metres, angles degrees, those of objects as they were stored. A name that is there twice, and a line
+that is not of its section, is a DecodeError with the line.
 
 Source: loadLocationsAndExtras of map2DStorage in C++ YARP 4.0.0.
 """
@@ -36,6 +37,7 @@ from yarpy.limit import MAP_NAMES
 T = TypeVar("T")
 
 NEWEST: Final = 4
+_PLAIN: Final = 2  # the first version with paths
 _DESCRIBED: Final = 3  # the first version with descriptions
 
 
@@ -94,21 +96,34 @@ def parse_names(text: str) -> MapNames:
 
 def spell_names(names: MapNames) -> str:
     """Return the file that says all this."""
-    lines = ["Version:", str(NEWEST), "Locations:"]
+    described: list[Place | Area | Path] = [*names.locations.values(), *names.areas.values()]
+    described += names.paths.values()
+    version = NEWEST if names.objects else _PLAIN
+    if version == _PLAIN and any(each.description for each in described):
+        version = _DESCRIBED
+
+    def spelled(name: str, *values: Any, description: str) -> str:
+        words = [name, *values, *([description] if version >= _DESCRIBED else [])]
+        return Bottle(words).to_text()
+
+    lines = ["Version:", str(version), "Locations:"]
     for name, place in names.locations.items():
-        lines.append(_spelled(name, *_where(place), place.description))
-    lines.append("Objects:")
+        lines.append(spelled(name, *_where(place), description=place.description))
+    if version >= NEWEST:
+        lines.append("Objects:")
     for name, thing in names.objects.items():
         where = (thing.x, thing.y, thing.z, thing.roll, thing.pitch, thing.yaw)
-        lines.append(_spelled(name, thing.map_id, *map(float, where), thing.description))
+        values = thing.map_id, *map(float, where)
+        lines.append(spelled(name, *values, description=thing.description))
     lines.append("Areas:")
     for name, area in names.areas.items():
         numbers = [float(one) for point in area.points for one in point.array[:2]]
-        lines.append(_spelled(name, area.map_id, len(area.points), *numbers, area.description))
+        values = area.map_id, len(area.points), *numbers
+        lines.append(spelled(name, *values, description=area.description))
     lines.append("Paths:")
     for name, path in names.paths.items():
         places = (Bottle(_where(place)) for place in path.waypoints)
-        lines.append(_spelled(name, *places, path.description))
+        lines.append(spelled(name, *places, description=path.description))
     return "".join(f"{line}\n" for line in lines)
 
 
@@ -126,10 +141,6 @@ def _keep(kept: dict[str, T], name: str, value: T) -> None:
 
 def _where(place: Place) -> list[Any]:
     return [place.map_id, float(place.x), float(place.y), float(place.theta)]
-
-
-def _spelled(*values: Any) -> str:
-    return Bottle(values).to_text()
 
 
 def _floats(values: list[Any], count: int) -> list[float]:
