@@ -58,7 +58,7 @@ def test_a_collection_of_cpp(folder: MapFolder, tmp_path: Path) -> None:
         with pytest.raises(DecodeError, match=r'own.ini, line 1: .* is not "mapfile: NAME.map"'):
             [*folder.grids("own.ini")]
     listed.write_text("mapfile: bath.map\n")
-    with pytest.raises(FileNotFoundError):
+    with pytest.raises(DecodeError, match=r"own.ini, line 1: there is no file .*bath\.map"):
         [*folder.grids("own.ini")]
 
 

@@ -64,7 +64,11 @@ class MapFolder:
             if tag != "mapfile:" or not words or number > MAP_GRIDS:
                 wanted = f'"mapfile: NAME.map", of which {MAP_GRIDS} may be'
                 raise DecodeError(f"{name}, line {number}: {line[:60]!r} is not {wanted}")
-            grid = self.grid(words[0])
+            try:
+                grid = self.grid(words[0])
+            except FileNotFoundError as error:
+                gone = f"{name}, line {number}: there is no file {error.filename}"
+                raise DecodeError(gone) from None
             yield cropped(grid) if "crop" in words[1:] else grid
 
     def keep_grids(self, grids: Sequence[Grid], name: str) -> None:
