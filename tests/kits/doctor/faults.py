@@ -62,7 +62,7 @@ class World:
 
         thread = threading.Thread(target=run, daemon=True)
         thread.start()
-        self.stack.callback(thread.join, 5)
+        self.stack.callback(thread.join, HANG)
         self.stack.callback(over.set)
 
     def program(self, code: str) -> Process:
