@@ -11,6 +11,7 @@ import time
 import pytest
 from support.lasted import lasted
 from support.transport import ScriptTransport, scripted
+from support.wait import HANG
 
 from yarpy.errors import LinkClosed, LocalProtocolError, RemoteProtocolError, Timeout
 from yarpy.link.begin.greeting import driver_of
@@ -95,9 +96,9 @@ def test_silence_is_a_timeout_and_what_came_is_kept() -> None:
     started = time.monotonic()
     with pytest.raises(Timeout):
         driver.run(steps, time.monotonic() + 0.05)
-    assert lasted(started) < 2
+    assert lasted(started) < 10
     right.sendall(b"34")
-    assert driver.run(driver.stream.read_exact(4), time.monotonic() + 5) == b"1234"
+    assert driver.run(driver.stream.read_exact(4), time.monotonic() + HANG) == b"1234"
     # and the limit is gone: this waits as long as it takes
     threading.Timer(0.1, right.sendall, (b"5",)).start()
     assert driver.run(driver.stream.read_exact(1)) == b"5"

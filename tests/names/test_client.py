@@ -239,7 +239,7 @@ def test_a_server_that_says_nothing() -> None:
         start = time.monotonic()
         with pytest.raises(NoNameServer, match=r"within 0\.2 s"):
             names.query("/x")
-        assert lasted(start) < 2
+        assert lasted(start) < 4
 
 
 def test_the_last_moment_of_a_call_says_nothing_of_the_server() -> None:

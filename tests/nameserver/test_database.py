@@ -13,7 +13,7 @@ from hypothesis import strategies as st
 from support.lasted import lasted
 from support.name_database import EVERYTHING, Files, say
 from support.name_line import new_service
-from support.wait import HANG
+from support.wait import HANG, wait_until
 
 from yarpy.contact import Contact
 from yarpy.data.bottle import Bottle
@@ -96,9 +96,7 @@ def test_written_in_the_background(files: Files) -> None:
     database.start()
     database.start()
     say(service, "register /a")
-    deadline = time.monotonic() + 5
-    while not files.tags() and time.monotonic() < deadline:
-        time.sleep(0.01)
+    wait_until(files.tags)
     assert files.tags(), "nothing was written within 5 s"
     database.close()
     assert all(thread.name != "name database" for thread in threading.enumerate())
@@ -152,9 +150,7 @@ def test_trouble_in_the_background_is_logged(
     database._ports.connection.execute("DROP TABLE tags")
     database.start()
     say(service, "register /a")
-    deadline = time.monotonic() + 5
-    while not caplog.records and time.monotonic() < deadline:
-        time.sleep(0.01)
+    wait_until(lambda: caplog.records)
     assert "cannot be written" in caplog.records[0].getMessage()
     start = time.monotonic()
     with pytest.raises(AddressError):

@@ -148,7 +148,7 @@ def test_waiting_for_both_ports(names: LocalNames) -> None:
     started = time.monotonic()
     with pytest.raises(UnknownName):
         network.connect("/out", "/in", names=names, timeout=0.1)
-    assert lasted(started) < 2
+    assert lasted(started) < 10
 
 
 # ---------------------------------------------------------------------------------- waiting
@@ -177,7 +177,7 @@ def test_default_name_server_is_used() -> None:
         assert yarpy.connect("/out", "/in").reply == "Added connection from /out to tcp://in"
         assert yarpy.exists("/in")
         assert yarpy.is_connected("/out", "/in")
-        assert yarpy.wait_for("/in", timeout=1)
+        assert yarpy.wait_for("/in", timeout=HANG)
         out.write([1])
         assert in_.read(timeout=HANG).value == [1]
         assert yarpy.query("/in") == in_.contact

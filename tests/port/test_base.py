@@ -114,7 +114,7 @@ def test_waiting_for_a_port_that_comes_later(names: LocalNames) -> None:
         with pytest.raises(UnknownName):
             out.connect("/in", timeout=0.1)
         assert time.monotonic() - started > 0.05  # a clock of Windows ticks every 16 ms
-        assert lasted(started) < 2
+        assert lasted(started) < 10
         later: list[Port] = []
         threading.Timer(0.1, lambda: later.append(Port("/in", names=names))).start()
         out.connect("/in", timeout=HANG)
@@ -161,7 +161,7 @@ def test_connection_to_oneself_can_be_made_and_ended(names: LocalNames) -> None:
         wait_until(lambda: not port.inputs and not port.outputs)
         port.connect("/it")
         started = time.monotonic()
-    assert lasted(started) < 4
+    assert lasted(started) < 10
 
 
 # ---------------------------------------------------------------------------------- administration

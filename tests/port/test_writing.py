@@ -207,7 +207,7 @@ def test_reader_that_dies_is_counted_and_forgotten(names: LocalNames) -> None:
         link = out._hub.outputs.links[0]
         sock.close()
         written = 0
-        deadline = time.monotonic() + 5
+        deadline = time.monotonic() + HANG
         while out.outputs and time.monotonic() < deadline:
             out.write([written])
             written += 1
@@ -252,7 +252,7 @@ def test_flush_has_a_limit(names: LocalNames) -> None:
         out.write([1])
         started = time.monotonic()
         assert not out.flush(timeout=0.05)
-        assert lasted(started) < 2
+        assert lasted(started) < 10
         assert in_.read(timeout=HANG).value == [1]
         assert out.flush(timeout=HANG)
 
@@ -288,7 +288,7 @@ def test_writer_to_a_stuck_reader_can_be_closed(names: LocalNames) -> None:
         time.sleep(0.2)
         started = time.monotonic()
         out.close()
-        assert lasted(started) < 5
+        assert lasted(started) < 10
         thread.join(HANG)
         assert not thread.is_alive()
         sock.close()

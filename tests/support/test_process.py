@@ -2,12 +2,11 @@
 
 import os
 import sys
-import time
 
 import pytest
 from support import process as module
 from support.process import Process, descendants
-from support.wait import HANG
+from support.wait import HANG, wait_until
 
 
 def python(code: str) -> Process:
@@ -84,10 +83,7 @@ def test_whole_family_ends_even_if_it_does_not_want_to(method: str) -> None:
         process.stop(grace=0.1)
     else:
         process.kill()
-    deadline = time.monotonic() + 5
-    while is_running(child) and time.monotonic() < deadline:
-        time.sleep(0.01)
-    assert not is_running(child)
+    wait_until(lambda: not is_running(child))
     assert not is_running(process.pid)
     process.stop()
 
@@ -98,10 +94,7 @@ def test_who_lost_its_parent_ends_too() -> None:
         child = int(process.wait_line(r"child (\d+)")[1])
         assert process._popen.wait(HANG) == 0
         assert is_running(child)
-    deadline = time.monotonic() + 5
-    while is_running(child) and time.monotonic() < deadline:
-        time.sleep(0.01)
-    assert not is_running(child)
+    wait_until(lambda: not is_running(child))
 
 
 def test_interpreter_exit_ends_what_was_forgotten(tmp_path: os.PathLike[str]) -> None:

@@ -95,7 +95,7 @@ def test_waiting_has_a_limit_that_can_be_lifted(pair: Pair) -> None:
     started = time.monotonic()
     with pytest.raises(BlockingIOError):
         pair[1].recv_into(room)
-    assert time.monotonic() - started > 0.04 and lasted(started) < 2
+    assert time.monotonic() - started > 0.04 and lasted(started) < 10
     pair[1].limit_waiting(None)
     threading.Timer(0.1, pair[0].send, ([b"late"],)).start()
     assert pair[1].recv_into(room) == 4

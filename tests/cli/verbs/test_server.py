@@ -5,7 +5,6 @@ import signal
 import socket
 import sys
 import threading
-import time
 import urllib.request
 from pathlib import Path
 
@@ -115,10 +114,7 @@ def test_silent(lone, port):
     words = ("server", "--ip", "127.0.0.1", "--socket", str(port), "--silent")
     with lone.start(*words) as process:
         with yarpy.YarpNameClient("127.0.0.1", port) as client:
-            deadline = time.monotonic() + 10
-            while not client.alive():
-                assert time.monotonic() < deadline
-                time.sleep(0.02)
+            wait_until(client.alive)
         process.signal(signal.SIGTERM)
         assert process.wait() == 0
     assert (process.stdout, process.stderr) == ("", "")

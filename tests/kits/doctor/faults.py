@@ -16,6 +16,7 @@ import subprocess
 import sys
 import threading
 import time
+from collections import Counter
 from collections.abc import Callable, Iterator
 from contextlib import ExitStack, contextmanager
 from dataclasses import dataclass
@@ -47,6 +48,7 @@ class World:
         self.names = server.client
         self.stack = ExitStack()
         self.options: dict[str, Any] = {}  # for the Case
+        self.acts: list[Counter[str]] = []  # what is done again and again, and how often it was
 
     def open(self, name: str, kind: Any = yarpy.BufferedPort, **options: Any) -> Any:
         return self.stack.enter_context(kind(name, names=self.names, **options))
@@ -54,16 +56,27 @@ class World:
     def again(self, act: Callable[[], object], pause: float = 0.01) -> None:
         """Do it again and again, in a thread, until the fault is over."""
         over = threading.Event()
+        done: Counter[str] = Counter()
+        self.acts.append(done)
 
         def run() -> None:
             while not over.wait(pause):
                 with contextlib.suppress(yarpy.YarpError):
                     act()
+                done["times"] += 1
 
         thread = threading.Thread(target=run, daemon=True)
         thread.start()
         self.stack.callback(thread.join, HANG)
         self.stack.callback(over.set)
+
+    def sleep(self, seconds: float) -> None:
+        """Sleep as the doctor does between two looks, and on a busy machine until all that is done
+        again and again was done a few times."""
+        before = [done["times"] for done in self.acts]
+        time.sleep(seconds)
+        for done, times in zip(self.acts, before, strict=True):
+            wait_until(lambda done=done, times=times: done["times"] > times + 2)  # type: ignore[misc]
 
     def program(self, code: str) -> Process:
         """A program of its own that opens ports at this server, and has said so."""
@@ -163,7 +176,8 @@ def other_port(world: World) -> Iterator[tuple[str, ...]]:
     yield ("/talker", "/listener")
 
 
-@fault("duplicate-name", "a second program takes a name that a living one has", "one-sided")
+@fault("duplicate-name", "a second program takes a name that a living one has",
+       "one-sided", "writes-nothing")  # fmt: skip
 def duplicate(world: World) -> Iterator[tuple[str, ...]]:
     world.open("/talker").connect(world.open("/listener").name)
     world.names.unregister("/listener")

@@ -39,6 +39,8 @@ def world(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[World]:
     try:
         (tmp_path / "yarp.conf").write_text(f"127.0.0.1 {server.port} yarp\n")
         world = World(tmp_path, server)
+        clock = SimpleNamespace(sleep=world.sleep, monotonic=time.monotonic, time=time.time)
+        monkeypatch.setattr("yarpy.kits.doctor.case.time", clock)
         with world.stack:
             yield world
     finally:

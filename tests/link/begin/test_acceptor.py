@@ -161,7 +161,7 @@ def test_thousand_silent_connections() -> None:
             with dial(acceptor) as sock:
                 sock.sendall(b"I can speak")
                 assert sock.recv(20) == b"I can speak"
-            assert lasted(started) < 5
+            assert lasted(started) < 10
             silent[500].sendall(b"me too, please")
             assert silent[500].recv(20) == b"me too, please"
             assert threads() <= 2

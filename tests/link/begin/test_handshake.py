@@ -197,7 +197,7 @@ def test_peer_that_never_answers() -> None:
         pytest.raises(Timeout),
     ):
         greet(contact, Route("/me", "/target"), timeout=0.2)
-    assert lasted(started) < 3
+    assert lasted(started) < 4
     found[0].close()
 
 
@@ -295,7 +295,7 @@ def test_half_a_greeting_ends_in_time(monkeypatch: pytest.MonkeyPatch) -> None:
     started = time.monotonic()
     _, found = answer_to(b"CONNECT me and then nothing")
     assert isinstance(found, Timeout)
-    assert lasted(started) < 3
+    assert lasted(started) < 10
 
 
 def test_recognition_wants_eight_bytes_and_knows_the_installed() -> None:

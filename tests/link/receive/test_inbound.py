@@ -163,7 +163,7 @@ def _patient(monkeypatch: pytest.MonkeyPatch) -> None:
 
 
 def soon() -> float:
-    return time.monotonic() + 5
+    return time.monotonic() + HANG
 
 
 def read(link: Inbound, until: float | None, newest: bool = False) -> Message | None:
@@ -428,6 +428,6 @@ def test_silence_beyond_the_carriers_limit_ends_quietly(
         )
         started = time.monotonic()
         link.serve()
-        assert time.monotonic() - started > 0.02 and lasted(started) < 2.0
+        assert time.monotonic() - started > 0.02 and lasted(started) < 10
     assert owner.ended == [("the peer is silent", False)]
     assert not caplog.records

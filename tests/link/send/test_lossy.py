@@ -7,6 +7,7 @@ import time
 
 import pytest
 from support.outbound import connected, open_link, read_messages
+from support.wait import HANG, wait_until
 
 from yarpy.carriers.own.tcp import Tcp
 from yarpy.link.ending import NEVER, moment
@@ -23,11 +24,9 @@ def test_newest_message_wins() -> None:
         assert [link.box.offer(Packet([number])) for number in range(9)] == [False] * 9
         assert (link.counter.messages, link.counter.replaced) == (1, 9)
         read_messages(far, 1)
-        until = time.monotonic() + 5
-        while not link.box.offer(Packet([2])):
-            assert time.monotonic() < until
+        wait_until(lambda: link.box.offer(Packet([2])))
         link.sender.window.until = math.inf  # a busy machine is slow, not its peer
-        assert link.reliable.offer(Packet([3]), moment(1)) is True, "one behind the other"
+        assert link.reliable.offer(Packet([3]), moment(HANG)) is True, "one behind the other"
         read_messages(far, 2)
 
 
@@ -36,7 +35,7 @@ def test_a_reader_that_acknowledges_at_once_is_sent_more_at_a_time() -> None:
         link.join(NEVER, newest=True)
         window = link.sender.window
         deepest = 0
-        until = time.monotonic() + 10
+        until = time.monotonic() + HANG
         while deepest < 2 and time.monotonic() < until:  # a busy machine may take a while once
             sent = sum(link.box.offer(Packet([1])) is True for _ in range(2))
             deepest = max(deepest, window.open)

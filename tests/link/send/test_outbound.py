@@ -137,7 +137,7 @@ def test_drain_has_a_limit() -> None:
         link.send(Packet([bytes(10_000_000)]))
         started = time.monotonic()
         assert not link.wait_sent(moment(0.05))
-        assert lasted(started) < 2
+        assert lasted(started) < 10
         link.driver.transport.interrupt()
 
 
@@ -159,7 +159,7 @@ def test_goodbye_to_a_peer_that_does_not_answer(monkeypatch: pytest.MonkeyPatch)
         link.send(Packet([1]))
         started = time.monotonic()
         link.close()
-        assert lasted(started) < 2
+        assert lasted(started) < 10
         assert link.counter.messages == 0
         assert link.counter.unconfirmed == 1  # never acknowledged
         assert link.counter.drops == 0
@@ -189,7 +189,7 @@ def test_link_to_a_peer_that_takes_nothing_can_be_closed(
         time.sleep(0.1)
         started = time.monotonic()
         link.close()
-        assert lasted(started) < 3
+        assert lasted(started) < 10
         writer.join(HANG)
         assert len(ended) == 1
         assert link.counter.messages == 0
@@ -231,7 +231,7 @@ def test_stalled_reader_of_a_lossy_carrier_costs_its_writer_nothing() -> None:
         for _ in range(30):
             link.send(Packet([bytes(1 << 20)]))
         link.wait_acknowledged()
-        assert lasted(started) < 2.0
+        assert lasted(started) < 10
         assert link.counter.replaced > 10
         link.driver.transport.interrupt()
         wait_until(lambda: link.broken)

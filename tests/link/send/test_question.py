@@ -103,7 +103,7 @@ def test_call_behind_a_stuck_message_has_its_limit_too() -> None:
         with pytest.raises(Timeout):
             link.call(Packet(["ask"], key=CALL), moment(0.1))
         assert not link.wait_acknowledged(moment(0.1))
-        assert lasted(started) < 3
+        assert lasted(started) < 10
         link.driver.transport.interrupt()
         writer.join(HANG)
         assert not writer.is_alive()
