@@ -12,6 +12,7 @@ from contextlib import contextmanager
 from types import FrameType
 
 import pytest
+from support.lasted import lasted
 from support.system import NO_POLICIES, NO_TIMER
 from support.wait import HANG
 
@@ -131,11 +132,11 @@ def test_signal_handler_may_end_the_port_that_is_read(
             nonlocal took
             started = time.monotonic()
             end(in_)
-            took = time.monotonic() - started
+            took = lasted(started)
 
         with signalled(in_, out, end_it), pytest.raises(PortClosed):
             read_until(in_, "the end")
-        assert 0.0 < took < 2.0  # nobody waits for the frame beneath
+        assert 0.0 < took < 10  # nobody waits for the frame beneath
 
 
 @pytest.mark.skipif(bool(NO_TIMER), reason=NO_TIMER)

@@ -43,7 +43,7 @@ class Scripted:
             with connection, contextlib.suppress(OSError):
                 if answer is None:
                     continue
-                connection.settimeout(5)
+                connection.settimeout(HANG)
                 self.heard += connection.recv(4096)
                 connection.sendall(answer)
                 if not self._close:
@@ -207,10 +207,11 @@ def test_a_server_that_is_slow_is_no_ordinary_port(
 ) -> None:
     """Who it is, it says at once."""
     monkeypatch.setenv("YARP_NAMESPACE", "/other /root")
+    monkeypatch.setattr("yarpy.names.client.WHO", HANG)
     answer = f"This is {name} at tcp://127.0.0.1:10000/\r\n".encode()
     with (
         Scripted(b"", b"Welcome admin\r\n" + answer) as server,
-        YarpNameClient("127.0.0.1", server.port, 1.0) as names,
+        YarpNameClient("127.0.0.1", server.port, 0.5) as names,
         pytest.raises(NoNameServer, match=said),
     ):
         names.query("/x")

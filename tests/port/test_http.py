@@ -47,7 +47,7 @@ def where(port: yarpy.RpcServer) -> tuple[str, int]:
 
 
 def client(port: yarpy.RpcServer | yarpy.Port | yarpy.BufferedPort) -> HTTPConnection:
-    return HTTPConnection("127.0.0.1", port.contact.port, timeout=FAST)
+    return HTTPConnection("127.0.0.1", port.contact.port, timeout=HANG)
 
 
 def get(connection: HTTPConnection, target: str, **headers: str) -> tuple[int, str]:
@@ -95,7 +95,7 @@ def test_port_that_never_replies(names: LocalNames) -> None:
     with yarpy.BufferedPort("/in", names=names) as port:
         connection = client(port)
         assert get(connection, "/?req=hello+web") == (200, "[]\n")
-        assert port.read(timeout=FAST).value == ["hello", "web"]
+        assert port.read(timeout=HANG).value == ["hello", "web"]
         assert get(connection, "/a/b")[0] == 204
         connection.close()
 
@@ -105,7 +105,7 @@ def test_reader_that_answers_later(names: LocalNames) -> None:
 
         def read() -> None:
             for _ in range(2):
-                message = port.read(timeout=FAST)
+                message = port.read(timeout=HANG)
                 time.sleep(0.02)
                 message.reply(["got", *message.value])
 
@@ -114,7 +114,7 @@ def test_reader_that_answers_later(names: LocalNames) -> None:
         connection = client(port)
         assert get(connection, "/?req=1")[1] == '["got", 1]\n'
         assert get(connection, "/?req=2")[1] == '["got", 2]\n'
-        thread.join(FAST)
+        thread.join(HANG)
         connection.close()
 
 
@@ -124,7 +124,7 @@ def opened(port: yarpy.Port, target: str, count: int = 1) -> Iterator[HTTPRespon
     with closing(client(port)) as connection:
         connection.request("GET", target)
         with connection.getresponse() as response:
-            assert port.wait_for_outputs(count, FAST)
+            assert port.wait_for_outputs(count, HANG)
             yield response
 
 
@@ -197,7 +197,7 @@ def test_stalled_browser_costs_the_port_nothing(names: LocalNames) -> None:
 
 def test_browser_on_a_client_is_not_asked(names: LocalNames, echo: yarpy.RpcServer) -> None:
     with yarpy.RpcClient("/echo", name="/asker", names=names) as asker:
-        connection = HTTPConnection("127.0.0.1", asker.contact.port, timeout=FAST)
+        connection = HTTPConnection("127.0.0.1", asker.contact.port, timeout=HANG)
         connection.request("GET", "/r")
         connection.getresponse()
         wait_until(lambda: len(asker.outputs) == 2)
@@ -211,7 +211,7 @@ def test_browser_on_a_client_is_not_asked(names: LocalNames, echo: yarpy.RpcServ
 def test_idle_and_unfinished_connections_hold_nobody_up(echo: yarpy.RpcServer) -> None:
     idle = []
     for number in range(60):
-        sock = socket.create_connection(("127.0.0.1", echo.contact.port), FAST)
+        sock = socket.create_connection(("127.0.0.1", echo.contact.port), HANG)
         sock.sendall(b"GET / HTTP/1.1\r\nHost: localhost\r\n" + (b"\r\n" if number % 2 else b"X: "))
         idle.append(sock)
     connection = client(echo)
@@ -225,7 +225,7 @@ def test_greeting_that_never_ends_is_given_up(
     echo: yarpy.RpcServer, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr(handshake, "TIMEOUT", 0.2)
-    with socket.create_connection(("127.0.0.1", echo.contact.port), FAST) as sock:
+    with socket.create_connection(("127.0.0.1", echo.contact.port), HANG) as sock:
         with pytest.raises(OSError):
             for _ in range(200):
                 sock.sendall(b"GET /xx " if not _ else b"x")
@@ -248,7 +248,7 @@ def test_ten_who_send_too_slowly_block_nobody(
         monkeypatch.setattr(f"yarpy.carriers.web.{module}.TIME", 0.5)
     slow = []
     for _ in range(10):
-        sock = socket.create_connection(("127.0.0.1", echo.contact.port), FAST)
+        sock = socket.create_connection(("127.0.0.1", echo.contact.port), HANG)
         sock.sendall(beginning)
         slow.append(sock)
     connection = client(echo)
@@ -339,7 +339,7 @@ def test_who_is_refused_occupies_nothing_for_long(
 def test_message_that_cannot_be_read_is_400(echo: yarpy.RpcServer) -> None:
     with yarpy.NameServer() as server:
         for host, port in (("127.0.0.1", server.port), where(echo)):
-            connection = HTTPConnection(host, port, timeout=FAST)
+            connection = HTTPConnection(host, port, timeout=HANG)
             for query in ("/?req=", "/?data="):
                 connection.request("GET", query + "(" * 4000)
                 answer = connection.getresponse()
@@ -359,7 +359,7 @@ def test_port_that_sends_nothing_says_so(echo: yarpy.RpcServer) -> None:
     assert "read" not in json.loads(get(connection, "/*/may")[1])
     connection.close()
     for first in (b"GET /?action=snapshot HTTP/1.1\r\n", b"GET /?ws&read HTTP/1.1\r\n" + UPGRADE):
-        with socket.create_connection(where(echo), FAST) as sock:
+        with socket.create_connection(where(echo), HANG) as sock:
             sock.sendall(first + b"Host: localhost\r\n\r\n")
             said = sock.makefile("rb").readline()
             assert said.startswith(b"HTTP/1.1 403 ")
@@ -373,7 +373,7 @@ def test_ports_talk_http(names: LocalNames, echo: yarpy.RpcServer) -> None:
 
 def test_name_server_in_a_browser() -> None:
     with yarpy.NameServer() as server, yarpy.RpcServer("/x", lambda m: m.value) as port:
-        connection = HTTPConnection("127.0.0.1", server.port, timeout=FAST)
+        connection = HTTPConnection("127.0.0.1", server.port, timeout=HANG)
 
         def ask(query: str) -> object:
             return json.loads(get(connection, query)[1])
@@ -408,7 +408,7 @@ def test_name_server_in_a_browser() -> None:
         assert '<ul id="ports"' in get(connection, "/")[1]  # filled by a script
         assert link in get(connection, "/data=list")[1]
         assert 'value="query $portname"' in get(connection, "/data=help")[1]
-        here = HTTPConnection("127.0.0.1", port.contact.port, timeout=FAST)
+        here = HTTPConnection("127.0.0.1", port.contact.port, timeout=HANG)
         assert f'href="http://127.0.0.1:{server.port}/"' in get(here, "/")[1]
         here.close()
         connection.close()
@@ -501,7 +501,7 @@ def test_pictures_on_a_connection_that_was_used_for_a_page(names: LocalNames) ->
         connection.request("GET", "/?action=stream&quality=20")
         response = connection.getresponse()
         assert response.getheader("Content-Type", "").startswith("multipart/x-mixed-replace")
-        assert port.wait_for_outputs(1, FAST)
+        assert port.wait_for_outputs(1, HANG)
         wait_until(lambda: not port.inputs)
         (link,) = port.outputs
         assert (link.target, link.carrier) == ("null", "mjpeg+quality.20")
@@ -517,7 +517,7 @@ def test_one_picture(names: LocalNames) -> None:
     with yarpy.BufferedPort("/cam", names=names) as port:
         connection = client(port)
         connection.request("GET", "/?action=snapshot", headers={"User-Agent": "curl/8"})
-        assert port.wait_for_outputs(1, FAST)
+        assert port.wait_for_outputs(1, HANG)
         port.write(yarpy.Image(np.zeros((8, 8, 3), "u1")))
         response = connection.getresponse()
         assert (response.status, response.getheader("Content-Type")) == (200, "image/jpeg")
@@ -584,7 +584,7 @@ def test_curl_reads(names: LocalNames) -> None:
             stdout=subprocess.PIPE,
         ) as process,
     ):
-        assert port.wait_for_outputs(1, FAST)
+        assert port.wait_for_outputs(1, HANG)
         port.write(["hi", 3])
         port.close()
-        assert process.communicate(timeout=FAST)[0] == b"hi 3\r\n"
+        assert process.communicate(timeout=HANG)[0] == b"hi 3\r\n"
