@@ -158,16 +158,19 @@ def test_close_from_another_thread_wakes_the_reader() -> None:
 
 @pytest.fixture(autouse=True)
 def _patient(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Links wait longer for a reader with the lease than a busy machine makes it wait."""
-    monkeypatch.setattr(turn, "AWAY", 0.5)
+    """Links wait longer for a reader with the lease than a busy machine makes it wait; `read` says
+    when it has gone."""
+    monkeypatch.setattr(turn, "AWAY", HANG)
 
 
 def soon() -> float:
     return time.monotonic() + HANG
 
 
-def read(link: Inbound, until: float | None, newest: bool = False) -> Message | None:
-    """Read as the thread that has the lease does."""
+def read(
+    link: Inbound, until: float | None, newest: bool = False, stays: bool = False
+) -> Message | None:
+    """Read as the thread that has the lease does, and stay away then, or not yet."""
     lease = link.turn.lease
     assert lease is not None
     assert lease.open or lease.wait(HANG)
@@ -179,6 +182,9 @@ def read(link: Inbound, until: float | None, newest: bool = False) -> Message | 
         return message
     finally:
         lease.busy = False
+        if not stays:
+            turn.AWAY = 0.01
+            link.turn._changed.wake()
 
 
 def test_reader_may_take_the_turn() -> None:
@@ -337,7 +343,7 @@ def test_question_is_never_passed_over_for_something_newer() -> None:
         wait_until(lambda: link.turn.leased)
         near.sendall(message([2]) + message([3], "d") + message([4]))
         wait_until(lambda: link.driver.stream.waiting or link.driver.try_fill())
-        found = read(link, None, newest=True)
+        found = read(link, None, newest=True, stays=True)
         assert found is not None
         assert (found.value, found.wants_reply) == ([3], True)
         found.reply(["answer"])

@@ -12,6 +12,8 @@ from support.wait import HANG, wait_until
 from yarpy.link.receive import turn
 from yarpy.link.receive.turn import Turn
 
+OFTEN = 0.01  # seconds between two looks
+
 
 class Thread:
     """A connection's thread that has handed over a message, and the question it may have been."""
@@ -43,8 +45,8 @@ class Thread:
 
 @pytest.fixture
 def parked(monkeypatch: pytest.MonkeyPatch) -> Iterator[Thread]:
-    """It looks rarely enough for a busy machine."""
-    monkeypatch.setattr(turn, "AWAY", 0.3)
+    """It does not look before a test wants it to, however slow the machine is."""
+    monkeypatch.setattr(turn, "AWAY", HANG)
     thread = Thread()
     yield thread
     thread.turn.end()
@@ -74,7 +76,16 @@ def test_lease_opens_when_the_thread_parks() -> None:
     assert lease.open
 
 
-def test_thread_reads_on_when_the_reader_stays_away(parked: Thread) -> None:
+def look(parked: Thread, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Let it look at once, and often from now on."""
+    monkeypatch.setattr(turn, "AWAY", OFTEN)
+    parked.turn._changed.wake()
+
+
+def test_thread_reads_on_when_the_reader_stays_away(
+    parked: Thread, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    look(parked, monkeypatch)
     parked.join()
     assert parked.lease.over
     assert not parked.turn.leased
@@ -96,13 +107,15 @@ def test_thread_waits_until_the_reader_is_out(parked: Thread) -> None:
     parked.join()
 
 
-def test_open_question_keeps_the_thread_parked_and_its_end_wakes_it(parked: Thread) -> None:
+def test_open_question_keeps_the_thread_parked_and_its_end_wakes_it(
+    parked: Thread, monkeypatch: pytest.MonkeyPatch
+) -> None:
     parked.question = True
+    look(parked, monkeypatch)
     wait_until(lambda: parked.looks > 1)
-    time.sleep(0.4)
     looks = parked.looks
-    time.sleep(0.7)
-    assert parked.looks == looks  # it does not look again and again
+    time.sleep(20 * OFTEN)
+    assert parked.looks <= looks + 2  # it does not look again and again
     assert not parked.reads_on
     parked.question = False
     parked.turn.stir()
@@ -114,10 +127,9 @@ def test_thread_waits_for_an_open_question_though_the_lease_is_over(parked: Thre
     parked.question = True
     parked.turn.end()
     wait_until(lambda: parked.looks > 2)
-    time.sleep(0.05)
     looks = parked.looks
-    time.sleep(0.7)
-    assert parked.looks == looks
+    time.sleep(20 * OFTEN)
+    assert parked.looks <= looks + 2
     assert not parked.reads_on
     parked.question = False
     parked.turn.stir()

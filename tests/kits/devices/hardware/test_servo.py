@@ -31,12 +31,15 @@ from yarpy.nameserver.local import LocalNames
 
 
 @pytest.fixture(params=[(FEETECH, 1), (DYNAMIXEL, 2)], ids=["feetech", "dynamixel"])
-def both(request: pytest.FixtureRequest) -> Iterator[tuple[Kind, ServoBus, ServoBoard]]:
+def both(
+    request: pytest.FixtureRequest, monkeypatch: pytest.MonkeyPatch
+) -> Iterator[tuple[Kind, ServoBus, ServoBoard]]:
+    monkeypatch.setattr(servo, "TIMEOUT", HANG)  # a busy machine answers late
     kind, version = request.param
     with ServoBus(version, [1, 2, 5]) as bus:
-        for servo in bus.servos:
-            bus.put(servo, kind.position.at, kind.position.size, 2048)
-            bus.put(servo, kind.torque.at, 1, 1)
+        for number in bus.servos:
+            bus.put(number, kind.position.at, kind.position.size, 2048)
+            bus.put(number, kind.torque.at, 1, 1)
         with ServoBoard(kind, bus.port, [5, 1], ["lift", "pan"]) as board:
             yield kind, bus, board
 
@@ -104,11 +107,15 @@ def test_moving(both: tuple[Kind, ServoBus, ServoBoard]) -> None:
         board.switch_control_modes([0], ["torq"])
 
 
-def test_a_servo_that_is_unplugged(both: tuple[Kind, ServoBus, ServoBoard]) -> None:
+def test_a_servo_that_is_unplugged(
+    both: tuple[Kind, ServoBus, ServoBoard], monkeypatch: pytest.MonkeyPatch
+) -> None:
     _, bus, board = both
     gone = bus.servos.pop(1)
-    with pytest.raises(Timeout, match="servo 1 does not answer"):
+    monkeypatch.setattr(servo, "TIMEOUT", 0.05)
+    with pytest.raises(Timeout, match=r"servo \d does not answer"):
         board.encoders()
+    monkeypatch.setattr(servo, "TIMEOUT", HANG)
     bus.servos[1] = gone
     assert board.encoders() == [0.0, 0.0]
 
@@ -136,13 +143,17 @@ def test_registers() -> None:
 
 
 @pytest.mark.parametrize(("make", "version"), [(feetech, 1), (dynamixel, 2)])
-def test_in_the_file_of_a_robot(make: object, version: int) -> None:
+def test_in_the_file_of_a_robot(
+    make: object, version: int, monkeypatch: pytest.MonkeyPatch
+) -> None:
     assert callable(make)
+    monkeypatch.setattr(servo, "TIMEOUT", HANG)
     with ServoBus(version, [3, 4]) as bus:
         options = Property.from_text(f"(port {bus.port}) (ids (3 4)) (AxisName (a b))")
         board = make(options)
         assert board.axis_names == ["a", "b"]
         board.close()
+        monkeypatch.setattr(servo, "TIMEOUT", 0.5)
         with pytest.raises(Timeout, match="servo 9"):
             make(Property.from_text(f"(port {bus.port}) (ids (3 9))"))
 
