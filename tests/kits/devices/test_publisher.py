@@ -18,7 +18,7 @@ def test_it_goes_on_until_it_is_closed(caplog):
 
     with caplog.at_level(logging.WARNING):
         publisher = Publisher("/head", 0.001, step)
-        wait_until(lambda: len(steps) > 5, 20)
+        wait_until(lambda: len(steps) > 5)
         publisher.close()
     count = len(steps)
     assert set(steps) == {"yarpy device /head"}

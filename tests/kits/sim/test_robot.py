@@ -40,7 +40,7 @@ def test_head(robot: Robot):
     with ControlBoard("/icubSim/head", "/client", timeout=HANG) as head:
         assert head.axis_names[1] == "neck_roll"
         head.position_move([1], [45.0])
-        wait_until(lambda: all(head.motion_done()), 20)
+        wait_until(lambda: all(head.motion_done()))
         wait_until(lambda: abs(head.encoders()[1] - 45.0) < 0.1, 20)
         head.position_move([1], [0.0])
 

@@ -467,7 +467,7 @@ def until(step: Callable[[], object], condition: Callable[[], bool]) -> None:
         time.sleep(0.01)
         return condition()
 
-    wait_until(attempt, 10)
+    wait_until(attempt)
 
 
 @pytest.mark.parametrize(("ball_kind", "line_kind"), [("python", "lua"), ("lua", "python")])
