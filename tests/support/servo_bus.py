@@ -4,16 +4,22 @@
         bus.servos[1][56] = 10                      # its registers, bytes
 
 Rules: written from the manuals of the protocols, with packets put together here: what it is for
-must not test itself. Servos that are not in `ids` are silent.
+must not test itself. Servos that are not in `ids` are silent. While `late` is a list they answer
+into it.
 """
 
 from __future__ import annotations
 
+import fcntl
 import os
+import termios
 import threading
 import tty
+from array import array
 from contextlib import suppress
 from typing import Self
+
+from support.wait import wait_until
 
 
 class ServoBus:
@@ -27,6 +33,8 @@ class ServoBus:
         self.port = os.ttyname(slave)
         self._slave = slave
         self._heard = b""
+        self.late: list[bytes] | None = None
+        self._waits = False
         self._thread = threading.Thread(target=self._run, daemon=True)
         self._thread.start()
 
@@ -46,6 +54,28 @@ class ServoBus:
     def put(self, servo: int, register: int, size: int, number: int) -> None:
         """Put a number into registers."""
         self.servos[servo][register : register + size] = number.to_bytes(size, "little")
+
+    def catch_up(self) -> None:
+        """Send what is late; return when it has come to the other end. What is asked then is
+        answered when nothing of it is left there."""
+        said, self.late, self._waits = b"".join(self.late or ()), None, True
+        before = self._waiting()
+        os.write(self._master, said)
+        wait_until(lambda: self._waiting() == before + len(said))
+
+    def _waiting(self) -> int:
+        found = array("i", [0])
+        fcntl.ioctl(self._slave, termios.FIONREAD, found)
+        return found[0]
+
+    def _say(self, data: bytes) -> None:
+        if self._waits:
+            wait_until(lambda: not self._waiting())
+            self._waits = False
+        if self.late is None:
+            os.write(self._master, data)
+        else:
+            self.late.append(data)
 
     def _run(self) -> None:
         with suppress(OSError):
@@ -87,7 +117,7 @@ class ServoBus:
     def _answer(self, servo: int, data: bytes) -> None:
         if self.version == 1:
             inner = bytes((servo, len(data) + 2, 0)) + data
-            os.write(self._master, b"\xff\xff" + inner + bytes((255 - sum(inner) % 256,)))
+            self._say(b"\xff\xff" + inner + bytes((255 - sum(inner) % 256,)))
             return
         packet = b"\xff\xff\xfd\0" + bytes((servo,)) + (len(data) + 4).to_bytes(2, "little")
         packet += b"\x55\0" + data
@@ -97,4 +127,4 @@ class ServoBus:
                 rest = rest << 1 | (byte >> bit & 1)
                 if rest & 0x10000:
                     rest ^= 0x18005
-        os.write(self._master, packet + rest.to_bytes(2, "little"))
+        self._say(packet + rest.to_bytes(2, "little"))

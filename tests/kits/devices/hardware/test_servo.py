@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import sys
 from collections.abc import Iterator
-from contextlib import ExitStack
+from contextlib import ExitStack, contextmanager
 
 import pytest
 
@@ -29,12 +29,19 @@ from yarpy.kits.devices.hardware.servo import (
 )
 from yarpy.nameserver.local import LocalNames
 
+SERVOS = servo.TIMEOUT  # seconds
+
+
+@pytest.fixture(autouse=True)
+def patience(monkeypatch: pytest.MonkeyPatch) -> pytest.MonkeyPatch:
+    """The servos are a thread of this program, which may have to wait longer for its turn than a
+    servo takes to answer."""
+    monkeypatch.setattr(servo, "TIMEOUT", HANG)
+    return monkeypatch
+
 
 @pytest.fixture(params=[(FEETECH, 1), (DYNAMIXEL, 2)], ids=["feetech", "dynamixel"])
-def both(
-    request: pytest.FixtureRequest, monkeypatch: pytest.MonkeyPatch
-) -> Iterator[tuple[Kind, ServoBus, ServoBoard]]:
-    monkeypatch.setattr(servo, "TIMEOUT", HANG)  # a busy machine answers late
+def both(request: pytest.FixtureRequest) -> Iterator[tuple[Kind, ServoBus, ServoBoard]]:
     kind, version = request.param
     with ServoBus(version, [1, 2, 5]) as bus:
         for number in bus.servos:
@@ -42,6 +49,14 @@ def both(
             bus.put(number, kind.torque.at, 1, 1)
         with ServoBoard(kind, bus.port, [5, 1], ["lift", "pan"]) as board:
             yield kind, bus, board
+
+
+@contextmanager
+def impatient() -> Iterator[None]:
+    """The time limit is that of servos, here."""
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(servo, "TIMEOUT", SERVOS)
+        yield
 
 
 class NoisyLine(Closeable):
@@ -53,6 +68,9 @@ class NoisyLine(Closeable):
     def write(self, data: bytes) -> None:
         pass
 
+    def discard(self) -> None:
+        pass
+
     def read(self, until: float) -> bytes:
         return b"\x00"
 
@@ -60,7 +78,7 @@ class NoisyLine(Closeable):
 def test_a_line_that_is_never_silent_is_given_up(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(servo, "Line", NoisyLine)
     monkeypatch.setattr(servo, "NOISE", 0.01)
-    with pytest.raises(Timeout, match="servo 1 does not answer"):
+    with impatient(), pytest.raises(Timeout, match="servo 1 does not answer"):
         ServoBoard(FEETECH, "/dev/noise", [1])
 
 
@@ -107,17 +125,24 @@ def test_moving(both: tuple[Kind, ServoBus, ServoBoard]) -> None:
         board.switch_control_modes([0], ["torq"])
 
 
-def test_a_servo_that_is_unplugged(
-    both: tuple[Kind, ServoBus, ServoBoard], monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_a_servo_that_is_unplugged(both: tuple[Kind, ServoBus, ServoBoard]) -> None:
     _, bus, board = both
     gone = bus.servos.pop(1)
-    monkeypatch.setattr(servo, "TIMEOUT", 0.05)
-    with pytest.raises(Timeout, match=r"servo \d does not answer"):
+    with impatient(), pytest.raises(Timeout, match=r"servo \d does not answer"):
         board.encoders()
-    monkeypatch.setattr(servo, "TIMEOUT", HANG)
     bus.servos[1] = gone
     assert board.encoders() == [0.0, 0.0]
+
+
+def test_a_late_answer_answers_nothing_else(both: tuple[Kind, ServoBus, ServoBoard]) -> None:
+    """It does not say which register it is about, and speeds are as long as positions."""
+    _, bus, board = both
+    bus.late = []
+    with impatient(), pytest.raises(Timeout, match="does not answer"):
+        board.encoders()
+    wait_until(lambda: len(bus.late or ()) == 2)
+    bus.catch_up()
+    assert board.encoder_speeds() == [0.0, 0.0]
 
 
 def test_on_ports(both: tuple[Kind, ServoBus, ServoBoard], names: LocalNames) -> None:
@@ -153,8 +178,7 @@ def test_in_the_file_of_a_robot(
         board = make(options)
         assert board.axis_names == ["a", "b"]
         board.close()
-        monkeypatch.setattr(servo, "TIMEOUT", 0.5)
-        with pytest.raises(Timeout, match="servo 9"):
+        with impatient(), pytest.raises(Timeout, match="servo [39]"):
             make(Property.from_text(f"(port {bus.port}) (ids (3 9))"))
 
 

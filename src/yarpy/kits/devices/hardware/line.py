@@ -41,6 +41,10 @@ class Line(Closeable):
         """Send all of this. Raises OSError."""
         self._serial.write(data)
 
+    def discard(self) -> None:
+        """Forget what has come and was not read. Raises OSError."""
+        self._serial.reset_input_buffer()
+
     def read(self, until: float) -> bytes:
         """Return what has come, b"" at the time `until` (`time.monotonic`). Raises OSError, also
         if the line is unplugged."""

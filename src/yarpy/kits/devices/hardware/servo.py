@@ -10,8 +10,8 @@
 
 Rules: it has the members of `control_board.interface`. 0 degrees is the middle of a turn. Servos
 move in the mode `pos` and go limp in `idl`; they begin limp, so that nothing moves by itself. One
-question reads all servos; a servo that does not answer within 50 ms fails the call. `baud` is the
-speed of the line.
+question reads all servos; a servo that does not answer within 50 ms fails the call, and what it
+says later answers no other question. `baud` is the speed of the line.
 """
 
 from __future__ import annotations
@@ -219,6 +219,7 @@ class ServoBoard(Closeable):
         found: dict[int, int] = {}
         asked = form.span(register.at, register.size) + bytes(self._ids)
         with self._lock:
+            self._line.discard()  # of servos that were too late: it does not say for which register
             self._line.write(form.packet(ALL, SYNC_READ, asked))
             until, received = time.monotonic() + TIMEOUT, b""
             while len(found) < len(self._ids):
