@@ -116,13 +116,20 @@ def test_a_camera_with_distances(network: CppYarp) -> None:
         assert client.clip_planes() == camera.clip_planes()
 
 
-def test_a_joypad(network: CppYarp) -> None:
-    """Without sticks: the client in C++ reads beyond its memory for one that it has not heard of
-    yet."""
+@pytest.mark.parametrize("together", [False, True], ids=["each", "together"])
+def test_a_joypad(network: CppYarp, together: bool) -> None:
+    """`together`: over the one port for all. Without sticks beside YARP 3: its client reads beyond
+    its memory for one that it has not heard of yet."""
     device_host(network)
     pad = devices.SimulatedJoypad()
-    pad.state.sticks.clear()
-    options = {"inner": "JoypadControlClient", "period": 10, "use_separate_ports": 1}
+    options: dict[str, object] = {"inner": "JoypadControlClient"}
+    if network.version < (4, 0):
+        if together:
+            pytest.skip("the client of C++ YARP 3 listens to a port for each")
+        pad.state.sticks.clear()
+        options |= {"period": 10, "use_separate_ports": 1}  # ms
+    else:
+        options |= {"period": 0.01, "use_all_port": str(together).lower()}  # s
     with (
         devices.Joypad.serve("/ours", pad),
         between(network, "JoypadControlServer", PATIENT, **options),
@@ -133,3 +140,6 @@ def test_a_joypad(network: CppYarp) -> None:
         pad.state.hats, pad.state.touches = [4], [Touch([Point(0.5, -0.5)])]
         wait_until(lambda: client.hats().value == [4])
         wait_until(lambda: client.touches().value == [Touch([Point(0.5, -0.5)])])
+        if pad.state.sticks:
+            pad.state.sticks[1] = Point(0.25, -0.75)
+            wait_until(lambda: client.sticks().value == [Point(), Point(0.25, -0.75)])
