@@ -168,17 +168,14 @@ def test_registers() -> None:
 
 
 @pytest.mark.parametrize(("make", "version"), [(feetech, 1), (dynamixel, 2)])
-def test_in_the_file_of_a_robot(
-    make: object, version: int, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_in_the_file_of_a_robot(make: object, version: int) -> None:
     assert callable(make)
-    monkeypatch.setattr(servo, "TIMEOUT", HANG)
     with ServoBus(version, [3, 4]) as bus:
         options = Property.from_text(f"(port {bus.port}) (ids (3 4)) (AxisName (a b))")
         board = make(options)
         assert board.axis_names == ["a", "b"]
         board.close()
-        with impatient(), pytest.raises(Timeout, match="servo [39]"):
+        with impatient(), pytest.raises(Timeout, match=r"servo [39]"):
             make(Property.from_text(f"(port {bus.port}) (ids (3 9))"))
 
 
