@@ -4,6 +4,7 @@ import threading
 from collections.abc import Iterator
 
 import pytest
+from support.cut import cut_at
 from support.wait import HANG, wait_until
 
 import yarpy
@@ -123,3 +124,19 @@ def test_who_waits_hears_of_the_end(intake: Intake) -> None:
     intake.close()
     thread.join(HANG)
     assert done == [[]]
+
+
+def test_a_signal_while_it_waits_does_no_harm(names: LocalNames) -> None:
+    """The lock of an Event stayed locked for ever, or was released twice."""
+    intake = open_intake(names)
+    number, there = 0, True
+    while there:
+        number += 1
+        files = ("log/intake.py", "threading.py", "yarpy/scope.py")
+        there = cut_at(number, lambda: intake.wait(0.01), *files)
+    assert number > 3
+    with yarpy.Port(ONE, names=names) as one:
+        assert one.wait_for_outputs(timeout=HANG)
+        one.write(line("here"))
+        assert texts(intake, 1) == ["here"]
+    intake.close()

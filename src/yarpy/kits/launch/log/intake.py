@@ -22,6 +22,7 @@ from yarpy.kits.launch.log.filter import matches
 from yarpy.limit import LOG_ORIGINS, LOG_WAITING, LOG_WAITING_BYTES
 from yarpy.names.base import NameClient
 from yarpy.port.keep.log_line import LogLine, read_message
+from yarpy.scope import Waiter
 from yarpy.wire.message import Message
 
 PARTS: Final = ("/log/", "/yarprunlog/")  # of the names of ports that log
@@ -53,7 +54,9 @@ class Intake:
         self._waiting: deque[Message] = deque()
         self._bytes = 0
         self._lock = threading.Lock()  # of these four
-        self._news = threading.Event()
+        # Whoever reads is often a main thread, and an Event has a lock that an exception out of a
+        # signal handler may leave locked.
+        self._news = Waiter()
         self._done = threading.Event()
         self._origins: dict[str, _Origin] = {}
         self.joined = 0  # looks for ports that were finished
@@ -78,11 +81,10 @@ class Intake:
         """Wait for a line, for so many seconds, and return whether one may be there."""
         until = None if timeout is None else time.monotonic() + timeout
         while not (self._waiting or self._done.is_set()):
-            left = 3600.0 if until is None else until - time.monotonic()
-            if left <= 0:
+            left = None if until is None else until - time.monotonic()
+            if left is not None and left <= 0:
                 return False
             self._news.wait(left)
-            self._news.clear()
         return True
 
     @property
@@ -98,7 +100,7 @@ class Intake:
     def close(self) -> None:
         """Take no more."""
         self._done.set()
-        self._news.set()
+        self._news.wake()
         self.port.close()
         self._thread.join()
 
@@ -151,8 +153,9 @@ class Intake:
             while len(waiting) > LOG_WAITING or self._bytes > LOG_WAITING_BYTES:
                 self._bytes -= _size(waiting.popleft())
                 self.lost += 1
-        if not self._news.is_set():  # which costs less than to set it again
-            self._news.set()
+            first = len(waiting) == 1
+        if first:  # else nobody waits for it
+            self._news.wake()
 
     def _join(self) -> None:
         """Ask all that log to send here."""
@@ -171,7 +174,7 @@ class Intake:
                     with suppress(yarpy.YarpError):  # its program is gone, or not ours to ask
                         yarpy.connect(name, self.port.name, "fast_tcp", names=self._names)
             self.joined += 1
-            self._news.set()
+            self._news.wake()
             self._done.wait(PERIOD)
 
 
