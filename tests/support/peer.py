@@ -32,6 +32,7 @@ import pytest
 from support import (
     cpp_venv,
     namespace,
+    rclpy_venv,
     thrift_venv,
     windows,
     wrapyfi_plugins_venv,
@@ -184,6 +185,7 @@ PEERS: dict[str, Callable[[], str]] = {
         *("rospy", "dynamic_reconfigure.server", "dynamic_reconfigure.client"),
         packages="python3-dynamic-reconfigure",
     ),
+    "rclpy": _made(rclpy_venv.prepare),
     "ros": _modules(
         *("rospy", "rosmsg", "std_msgs.msg", "sensor_msgs.msg"),
         packages="python3-rospy python3-rosmsg python3-std-msgs python3-sensor-msgs",

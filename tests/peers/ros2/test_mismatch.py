@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 import logging
+import threading
 
 import pytest
+from support.wait import HANG
 
 from yarpy.peers.ros2.key import NO_HASH, Key
 from yarpy.peers.ros2.mismatch import MOST_TOLD, Mismatch, log
@@ -54,6 +56,35 @@ def test_what_fits(caplog: pytest.LogCaptureFixture) -> None:
 def test_over_zenoh_no_version_is_another_one(caplog: pytest.LogCaptureFixture) -> None:
     Mismatch("/ear", OURS, strict=True).look(token(TEXT, NO_HASH))
     assert "do not hear each other" in said(caplog)[0]
+
+
+def test_two_threads_tell_once(caplog: pytest.LogCaptureFixture) -> None:
+    """Who is there is looked at by the thread that asks, and by the one that hears of news."""
+    mismatch = Mismatch("/ear", OURS, strict=False)
+    inside, both = threading.Event(), threading.Event()
+
+    class Slow(set[object]):
+        """The first to look whether it was told waits there, until the other one is done or would
+        have to wait, too."""
+
+        def __contains__(self, item: object) -> bool:
+            found = super().__contains__(item)
+            if not inside.is_set():
+                inside.set()
+                both.wait(0.2)
+            return found
+
+    mismatch._told = Slow()  # type: ignore[assignment]
+    first = threading.Thread(target=mismatch.look, args=(token(NUMBER, NO_HASH),))
+    first.start()
+    assert inside.wait(HANG)
+    second = threading.Thread(target=mismatch.look, args=(token(NUMBER, NO_HASH),))
+    second.start()
+    second.join(0.1)
+    both.set()
+    for thread in (first, second):
+        thread.join(HANG)
+    assert len(said(caplog)) == 1
 
 
 def test_a_flood_is_not_told(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -1,11 +1,13 @@
 """Warnings in the log of others at our topic with another type.
 
-Rules: each node is told of once for each type, and not more than `MOST_TOLD` in all. Where somebody
-has the same type without saying which version, it counts as ours.
+Rules: each node is told of once for each type, and not more than `MOST_TOLD` in all, whichever
+threads look: those who are there are told of in the thread that asks, those who come in another.
+Where somebody has the same type without saying which version, it counts as ours.
 """
 
 from __future__ import annotations
 
+import threading
 from typing import Final
 
 from yarpy.log import logger, readable
@@ -26,6 +28,7 @@ class Mismatch:
     def __init__(self, port_name: str, ours: Key, strict: bool) -> None:
         self._port_name, self._ours, self._strict = port_name, ours, strict
         self._told: set[tuple[Node, Key]] = set()
+        self._lock = threading.Lock()  # guards what was told
 
     def look(self, token: Token) -> None:
         """Tell of a peer, if it has another type."""
@@ -35,9 +38,10 @@ class Mismatch:
         same = theirs.type == ours.type
         if same and not self._strict and NO_HASH in (theirs.hash, ours.hash):
             return
-        if (token.node, theirs) in self._told or len(self._told) >= MOST_TOLD:
-            return
-        self._told.add((token.node, theirs))
+        with self._lock:
+            if (token.node, theirs) in self._told or len(self._told) >= MOST_TOLD:
+                return
+            self._told.add((token.node, theirs))
         log.warning(
             "%s and %s do not hear each other at %s: it is %s there and %s here; %s",
             self._port_name,

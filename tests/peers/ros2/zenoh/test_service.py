@@ -1,5 +1,6 @@
 """Services of a program: answered now, later, or not at all."""
 
+import threading
 from collections.abc import Iterator
 from typing import Any
 
@@ -69,6 +70,21 @@ def test_a_handler_that_raises(names: yarpy.LocalNames) -> None:
         assert client.call([0, 0]).sum == 0
         with pytest.raises(yarpy.errors.RemoteProtocolError, match="ZeroDivisionError"):
             client.call([1, 0])
+
+
+def test_slow_questions_are_answered_side_by_side(names: yarpy.LocalNames) -> None:
+    both = threading.Barrier(2)
+
+    def meet(request: Any) -> list[int]:
+        both.wait(HANG)  # for the other question
+        return [request.a]
+
+    with ros2.Node("/s") as server, ros2.Node("/c") as asker:
+        server.service("/meet", ADD, meet, threads=2)
+        client = asker.client("/meet", ADD)
+        assert client.wait(HANG)
+        asked = [client.ask([number, 0]) for number in range(2)]
+        assert [each.result(HANG).sum for each in asked] == [0, 1]
 
 
 def test_a_server_that_goes(names: yarpy.LocalNames, asked: list[Question]) -> None:

@@ -5,13 +5,16 @@
 Rules: the library is given bytes, and gives bytes: its own way of writing and reading messages
 takes many times as long. DDS opens sockets and looks for others by multicast, in the local network
 unless CYCLONEDDS_URI, ROS_LOCALHOST_ONLY, ROS_AUTOMATIC_DISCOVERY_RANGE or YARPY_BIND say
-otherwise, the first of them that is set.
+otherwise, the first of them that is set. What Fast DDS says of its types is not listened to: the
+library understands none with a list or array, and would not let these meet ours. Names are
+compared, and our log tells of other versions.
 """
 
 from __future__ import annotations
 
 import threading
 from collections.abc import Iterator, Mapping
+from contextlib import contextmanager
 from os import environ
 from typing import Any, Final
 
@@ -40,11 +43,17 @@ _AT: Final = """\
 <CycloneDDS><Domain><General><Interfaces><NetworkInterface address="{}"/></Interfaces>
 </General></Domain></CycloneDDS>"""
 
+# 1.15 is Fast DDS. Settings of the program or its user come behind, and count more.
+FITTING: Final = """\
+<CycloneDDS><Domain><Compatibility><IgnoreTypeInformation>1.15</IgnoreTypeInformation>
+</Compatibility></Domain></CycloneDDS>"""
+URI: Final = "CYCLONEDDS_URI"
+
 
 def settings(environment: Mapping[str, str], host: str) -> tuple[str, str]:
     """Return what the library is told, "" for nothing, and who reaches us, for people. `host`:
     where ports listen."""
-    if environment.get("CYCLONEDDS_URI"):
+    if environment.get(URI):
         return "", "whom CYCLONEDDS_URI lets in"
     found = environment.get("ROS_AUTOMATIC_DISCOVERY_RANGE", "").upper()
     only = environment.get("ROS_LOCALHOST_ONLY", "")
@@ -53,6 +62,21 @@ def settings(environment: Mapping[str, str], host: str) -> tuple[str, str]:
     if host and not only and not found:
         return _AT.format(host), reach()
     return "", "all networks"
+
+
+@contextmanager
+def _fitting() -> Iterator[None]:
+    """Let a domain that is joined meanwhile have `FITTING`. The library reads the environment, and
+    a domain that we made ourselves would end for all of the program when we leave it."""
+    before = environ.get(URI)
+    environ[URI] = f"{FITTING},{before}" if before else FITTING
+    try:
+        yield
+    finally:
+        if before is None:
+            del environ[URI]
+        else:
+            environ[URI] = before
 
 
 class Participant:
@@ -67,10 +91,11 @@ class Participant:
         self._domain: Any = None
         told, who = settings(environ, listening_host())
         if told:
-            self._domain = domains.Domain(domain, told)
+            self._domain = domains.Domain(domain, f"{FITTING},{told}")
         qos = core.Qos(core.Policy.Userdata(b"enclave=/;"))
         try:
-            self.dds: Any = domains.DomainParticipant(domain, qos=qos)
+            with _fitting():
+                self.dds: Any = domains.DomainParticipant(domain, qos=qos)
         except core.DDSException:
             self._leave_domain()
             raise
