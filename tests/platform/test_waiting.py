@@ -9,6 +9,7 @@ import time
 from _thread import allocate_lock
 
 import pytest
+from support.cut import cut_at
 from support.wait import HANG, inside
 
 from yarpy.cli.signals import _wake_main_thread
@@ -62,3 +63,13 @@ def test_a_signal_ends_it(number: str, what: str) -> None:
     finally:
         thread.join()
         signal.signal(getattr(signal, number), before)
+
+
+def test_an_exception_at_any_place_of_it_comes_out_as_it_is() -> None:
+    """It came out as "release unlocked lock" where an Event had just let go of its own."""
+    number, there = 0, True
+    while there:
+        number += 1
+        act = lambda: waiting.wait(seconds=0.01)  # noqa: E731
+        there = cut_at(number, act, "threading.py", "platform/waiting.py")
+    assert number > 3

@@ -12,7 +12,7 @@ from __future__ import annotations
 import sys
 import threading
 import time
-from _thread import LockType
+from _thread import LockType, allocate_lock
 from typing import Final
 
 SLICE: Final = 0.25  # seconds
@@ -35,8 +35,11 @@ def acquire(lock: LockType, until: float | None = None) -> bool:
 def wait(event: threading.Event | None = None, seconds: float | None = None) -> bool:
     """Wait until `event` is set, or so many seconds are over; return whether it is set. None: of
     neither kind, so that only an exception out of a signal handler ends it."""
-    event = threading.Event() if event is None else event
     until = None if seconds is None else time.monotonic() + seconds
+    if event is None:  # an Event is not whole where an exception comes between two of its steps
+        lock = allocate_lock()
+        lock.acquire()
+        return acquire(lock, until)
     while True:
         left = _MOST if until is None else until - time.monotonic()
         if event.wait(max(0.0, min(left, _MOST))):
