@@ -45,6 +45,7 @@ ALLOWED = {
     "yarpy.log",
     "yarpy.names.default",
     "yarpy.names.discovery",
+    "yarpy.platform.console",
     "yarpy.network.asking",
     "yarpy.network.connection",
     "yarpy.network.qos",
