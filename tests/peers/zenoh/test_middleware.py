@@ -16,7 +16,7 @@ import yarpy
 from yarpy.kits import wrap
 from yarpy.kits.wrap.middleware import Way
 from yarpy.peers.zenoh import transport as sessions
-from yarpy.peers.zenoh.middleware import key_of
+from yarpy.peers.zenoh.middleware import ZenohClient, key_of
 from yarpy.peers.zenoh.router import open_router
 
 pytest.importorskip("zenoh")
@@ -87,6 +87,20 @@ def test_questions(place: str) -> None:
             assert there.turn(1, np.ones(3)) == 4
             with pytest.raises(wrap.RemoteError, match="ValueError: too far"):
                 there.turn(91)
+
+
+def test_nobody_is_told_of_late(place: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    """The library took all the time there was, as it does on a busy computer."""
+    monkeypatch.setattr(ZenohClient, "_ask", lambda self, question, deadline: (None, True))
+    here, there, middleware = Arm(), Arm(), f"zenoh://{place}"
+    with wrap.call(there.turn, middleware=middleware):
+        with pytest.raises(yarpy.UnknownName, match="nobody serves"):
+            there.turn(1, timeout=0.2)
+        with (
+            wrap.serve(here.turn, middleware=middleware),
+            pytest.raises(yarpy.Timeout, match="did not answer"),
+        ):
+            there.turn(1, timeout=HANG)
 
 
 def test_a_server_that_comes_later(place: str) -> None:
