@@ -20,7 +20,7 @@ def test_words_as_people_and_programs_say_them(write: Write, network: yarpy.Loca
     robot, over = Robot(load(path), lambda kind: plugin), threading.Event()
     name = port_name("r")
     with (
-        yarpy.RpcServer(name, Answers(robot, over), names=network),
+        yarpy.RpcServer(name, Answers(robot, over.set), names=network),
         yarpy.RpcClient(name, names=network) as client,
     ):
 

@@ -3,16 +3,16 @@ more."""
 
 from __future__ import annotations
 
-import threading
+from collections.abc import Callable
 
 from yarpy.kits.launch.robot.robot import Robot
 from yarpy.kits.thrift import Service, i32, method
 
 
 class Answers(Service):
-    """Answers for a robot; `over` is set by whoever asks it to end."""
+    """Answers for a robot; `over` is called by whoever asks it to end."""
 
-    def __init__(self, robot: Robot, over: threading.Event) -> None:
+    def __init__(self, robot: Robot, over: Callable[[], object]) -> None:
         self._robot = robot
         self._over = over
 
@@ -39,7 +39,7 @@ class Answers(Service):
     @method
     def quit(self) -> str:
         """End the robot."""
-        self._over.set()
+        self._over()
         return "bye"
 
     bye = exit = quit

@@ -14,7 +14,6 @@ Exit codes: 0 it was ended; 1 it did not open.
 
 from __future__ import annotations
 
-import threading
 import time
 from typing import TYPE_CHECKING, Final
 
@@ -25,7 +24,7 @@ from yarpy.cli import log
 from yarpy.cli.output import print_line
 from yarpy.cli.signals import Interrupted
 from yarpy.cli.stderr import complain, warn
-from yarpy.platform import waiting
+from yarpy.scope import Waiter
 
 if TYPE_CHECKING:
     from yarpy.kits.launch.robot.alone import Alone
@@ -136,13 +135,13 @@ def _opened(options: yarpy.Property, wait: float) -> Alone | None:
 
 
 def _run(opened: Alone) -> int:
-    over = threading.Event()
+    over = Waiter()
 
     def answer(message: yarpy.Message) -> list[yarpy.Vocab]:
         words = message.as_(yarpy.Bottle)
         if not words or str(words[0]) != "quit":
             return [yarpy.Vocab("huh?")]
-        over.set()
+        over.wake()
         return [yarpy.Vocab("ok")]
 
     with opened, yarpy.RpcServer(f"{opened.name.rstrip('/')}/quit", answer):
@@ -151,7 +150,7 @@ def _run(opened: Alone) -> int:
                 print_line(f"{opened.device} is served as {opened.name} ({opened.server})")
             else:
                 print_line(f"{opened.device} is open")
-            waiting.wait(over)
+            over.wait()
         except Interrupted:
             pass
     return 0

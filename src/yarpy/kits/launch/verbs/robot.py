@@ -27,7 +27,7 @@ from yarpy.cli import log
 from yarpy.cli.output import print_line
 from yarpy.cli.signals import Interrupted
 from yarpy.cli.stderr import complain, warn
-from yarpy.platform import waiting
+from yarpy.scope import Waiter
 
 if TYPE_CHECKING:
     from yarpy.kits.launch.document.problem import Problem
@@ -116,9 +116,9 @@ def _run(description: Description, keep_going: bool) -> int:
 
     log.show()
     robot = Robot(description, devices.load, keep_going=keep_going, news=complain)
-    over = threading.Event()
+    over = Waiter()
     started = False
-    with yarpy.RpcServer(port_name(description.portprefix), Answers(robot, over)):
+    with yarpy.RpcServer(port_name(description.portprefix), Answers(robot, over.wake)):
         try:
             started = robot.start()
             if started:
@@ -126,7 +126,7 @@ def _run(description: Description, keep_going: bool) -> int:
                 print_line(
                     f"{description.name} runs: {states.count('open')} of {len(states)} devices"
                 )
-                waiting.wait(over)
+                over.wait()
         except Interrupted:
             started = True  # somebody wanted it to end
         _later(robot)

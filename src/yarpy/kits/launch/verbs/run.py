@@ -18,7 +18,6 @@ from __future__ import annotations
 
 import os
 import sys
-import threading
 from typing import TYPE_CHECKING, Final
 
 import click
@@ -30,8 +29,8 @@ from yarpy.cli.stderr import complain
 from yarpy.errors import AccessRefused, RemoteError
 from yarpy.kits.launch.run import terminal
 from yarpy.log import logger
-from yarpy.platform import waiting
 from yarpy.port.keep.log_sender import LOGGER
+from yarpy.scope import Waiter
 
 if TYPE_CHECKING:
     from yarpy.kits.launch.run.client import RunClient
@@ -184,14 +183,13 @@ def serve(
     if not (allowed and others):
         os.environ.setdefault(SETTING, "local")  # nobody else may: then nobody else need reach it
     shown_log.show()
-    over = threading.Event()
-    server = RunServer(name, allowed=allowed, log=log_to, ends=ends, on_exit=over.set)
+    over = Waiter()
+    server = RunServer(name, allowed=allowed, log=log_to, ends=ends, on_exit=over.wake)
     whom = "those who may by access.toml" if allowed and others else "its user on this computer"
     what = ", ".join(" ".join(entry) for entry in allowed.entries) or "programs"
     log.info("%s starts %s for %s", name, what, whom)
     try:
-        while not waiting.wait(over, 3600):
-            pass
+        over.wait()
     except Interrupted:
         pass
     finally:
