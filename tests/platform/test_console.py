@@ -70,3 +70,39 @@ def test_a_pipe_that_nobody_reads() -> None:
         os.close(writing)
     assert is_unread(raised.value)
     assert not is_unread(OSError(errno.ENOSPC, "no space left"))
+
+
+ESCAPES = """
+import ctypes, msvcrt
+from yarpy.platform.console import obey_escapes
+
+def mode(stream):
+    found = ctypes.c_ulong()
+    handle = ctypes.c_void_p(msvcrt.get_osfhandle(stream.fileno()))
+    assert ctypes.WinDLL("kernel32").GetConsoleMode(handle, ctypes.byref(found))
+    return found.value
+
+with open("CONOUT$", "w") as stream:
+    handle = ctypes.c_void_p(msvcrt.get_osfhandle(stream.fileno()))
+    ctypes.WinDLL("kernel32").SetConsoleMode(handle, mode(stream) & ~4)
+    assert not mode(stream) & 4
+    obey_escapes(stream)
+    assert mode(stream) & 4
+with open("nul", "w") as stream:
+    obey_escapes(stream)
+print("done")
+"""
+
+
+@pytest.mark.skipif(sys.platform != "win32", reason="only Windows has a console of this kind")
+def test_a_console_obeys_escape_sequences() -> None:
+    done = subprocess.run(
+        [sys.executable, "-c", ESCAPES],
+        input="",
+        stdout=subprocess.PIPE,
+        stderr=subprocess.STDOUT,
+        text=True,
+        timeout=HANG,
+        creationflags=getattr(subprocess, "CREATE_NO_WINDOW", 0),
+    )
+    assert done.stdout == "done\n"

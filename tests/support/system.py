@@ -39,6 +39,9 @@ NO_OWNERS: Final = (
     if sys.platform == "darwin"
     else ""
 )
+NO_RUN_SERVER: Final = (
+    "" if sys.platform != "win32" else "yarpy run --server needs Linux, macOS or another Unix"
+)
 NO_TIMER: Final = "" if hasattr(signal, "SIGALRM") else "Windows has no timer that sends signals"
 NO_GROUPS: Final = (
     ""

@@ -4,9 +4,12 @@ import json
 from pathlib import Path
 
 import pytest
+from support.system import NO_RUN_SERVER
 
 from yarpy.errors import AddressError
 from yarpy.kits.launch.run.book import Book, Entry, default_folder
+
+pytestmark = pytest.mark.skipif(bool(NO_RUN_SERVER), reason=NO_RUN_SERVER)
 
 
 def test_entries_come_back(tmp_path: Path) -> None:

@@ -4,8 +4,11 @@ import os
 from pathlib import Path
 
 import pytest
+from support.system import NO_RUN_SERVER
 
 from yarpy.kits.launch.run.output import LONGEST, Output
+
+pytestmark = pytest.mark.skipif(bool(NO_RUN_SERVER), reason=NO_RUN_SERVER)
 
 
 @pytest.fixture

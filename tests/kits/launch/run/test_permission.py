@@ -11,6 +11,7 @@ import urllib.request
 from pathlib import Path
 
 import pytest
+from support.system import NO_RUN_SERVER
 from support.wait import HANG, wait_until
 
 import yarpy
@@ -20,6 +21,9 @@ from yarpy.kits.launch.run.client import RunClient
 from yarpy.kits.launch.run.permission import RunGate, user_of
 from yarpy.link.begin.admission import ASK, Peer
 from yarpy.nameserver.local import LocalNames
+
+pytestmark = pytest.mark.skipif(bool(NO_RUN_SERVER), reason=NO_RUN_SERVER)
+
 
 FAR = Peer("192.168.1.9")
 

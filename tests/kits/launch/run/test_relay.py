@@ -3,12 +3,15 @@
 import os
 
 import pytest
+from support.system import NO_RUN_SERVER
 from support.wait import HANG, wait_until
 
 import yarpy
 from yarpy.kits.launch.run.relay import LogRelay, TerminalRelay
 from yarpy.link.begin.admission import Gate
 from yarpy.nameserver.local import LocalNames
+
+pytestmark = pytest.mark.skipif(bool(NO_RUN_SERVER), reason=NO_RUN_SERVER)
 
 
 def test_a_logger_that_is_there_is_told(names: LocalNames) -> None:

@@ -3,11 +3,11 @@
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
-from zenoh import ext
 
 from yarpy.errors import DecodeError
 from yarpy.peers.ros2.zenoh.attachment import SIZE, Attachment, attachment, parse_attachment
 
+ext = pytest.importorskip("zenoh.ext", reason='Zenoh: pip install "yarpy[zenoh]"')
 GID = bytes.fromhex("f15f21d2fafc22891bb0db868309bfcb")
 
 

@@ -11,7 +11,6 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-import zenoh
 from support.process import Process
 from support.ros2_peer import peer_command, peer_environment
 from support.wait import HANG, wait_until
@@ -24,6 +23,7 @@ from yarpy.peers.ros2.zenoh.attachment import attachment
 from yarpy.peers.ros2.zenoh.participant import Participant, take_part
 from yarpy.peers.zenoh.transport import share
 
+zenoh = pytest.importorskip("zenoh", reason='Zenoh: pip install "yarpy[zenoh]"')
 String = ros2.load("std_msgs/msg/String")
 ADD = "example_interfaces/srv/AddTwoInts"
 

@@ -146,9 +146,11 @@ def summary(player: Player, ended: bool) -> str:
 
 def _steered(player: Player, paused: bool) -> bool:
     """Play with keys and a line of progress on a terminal."""
+    from yarpy.platform.console import obey_escapes
     from yarpy.platform.keys import keys
 
     over, steering = threading.Event(), Keys(player)
+    obey_escapes(sys.stderr)
     with keys() as pressed:
 
         def steer() -> None:
