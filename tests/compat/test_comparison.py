@@ -26,7 +26,7 @@ RANKED = HERE.parents[1] / "compat" / "ranked.txt"
 
 
 def expected(script: Path) -> list[str]:
-    return (HERE / "expected" / f"{script.stem}.txt").read_text().splitlines()
+    return (HERE / "expected" / f"{script.stem}.txt").read_text("utf-8").splitlines()
 
 
 @pytest.mark.parametrize("script", SCRIPTS, ids=lambda path: path.stem)

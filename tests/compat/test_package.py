@@ -49,6 +49,7 @@ ALLOWED = {
     "yarpy.network.asking",
     "yarpy.network.connection",
     "yarpy.network.qos",
+    "yarpy.platform.console",
     "yarpy.platform.folders",
     "yarpy.qos",
     "yarpy.registry",

@@ -68,7 +68,7 @@ PEERS = ("peers/zmq", "peers/mqtt", "peers/ros")
 PATHS = (
     *("tests/nameserver", "tests/monitors", "tests/testing", "tests/aio", "tests/compat"),
     *(f"tests/kits/{room}" for room in ("devices", "doctor", "sim", "thrift", "views", "wrap")),
-    *("tests/kits/record/bag", "tests/kits/launch/verbs", "tests/peers/zenoh", "tests/life"),
+    *("tests/kits/launch/verbs", "tests/peers/zenoh", "tests/life"),
     *("tests/port/keep", "tests/port/answer", "tests/port/connect"),
     *sorted(f"tests/port/{file.name}" for file in (ROOT / "tests/port").glob("test_*.py")),
     *sorted(

@@ -179,6 +179,8 @@ def other_port(world: World) -> Iterator[tuple[str, ...]]:
 @fault("duplicate-name", "a second program takes a name that a living one has",
        "one-sided", "writes-nothing")  # fmt: skip
 def duplicate(world: World) -> Iterator[tuple[str, ...]]:
+    if sys.platform == "darwin":
+        pytest.skip("macOS says who listens to nobody but root")
     world.open("/talker").connect(world.open("/listener").name)
     world.names.unregister("/listener")
     world.open("/listener")
@@ -206,8 +208,8 @@ def unreachable(world: World) -> Iterator[tuple[str, ...]]:
 
 @fault("stopped", "the receiver's program is stopped with SIGSTOP")
 def stopped(world: World) -> Iterator[tuple[str, ...]]:
-    if sys.platform == "win32":
-        pytest.skip("Windows stops no programs by signals")
+    if sys.platform != "linux":
+        pytest.skip("only Linux says which programs are stopped")
     talker = world.open("/talker")
     program = world.program("port = yarpy.BufferedPort('/listener')")
     talker.connect("/listener")
@@ -228,7 +230,7 @@ def hangs(world: World) -> Iterator[tuple[str, ...]]:
 
 @fault("descriptors", "a program has used up its file descriptors")
 def descriptors(world: World) -> Iterator[tuple[str, ...]]:
-    if not process.PROC.exists():
+    if sys.platform != "linux":
         pytest.skip("only Linux says how many descriptors a program has")
     world.program(
         "port = yarpy.BufferedPort('/listener')\n"

@@ -11,8 +11,9 @@ from support.system import NO_OWNERS
 
 from yarpy.kits.doctor import process
 
-LINUX = process.PROC.exists()
-linux_only = pytest.mark.skipif(not LINUX, reason="only Linux, by /proc, says that of programs")
+linux_only = pytest.mark.skipif(
+    sys.platform != "linux", reason="only Linux, by /proc, says that of programs"
+)
 
 
 @pytest.mark.skipif(bool(NO_OWNERS), reason=NO_OWNERS)
