@@ -89,6 +89,16 @@ def test_now_waits_for_the_first_message(source: yarpy.Port, heard: NetworkClock
     assert heard.now() == 7.0
 
 
+def test_so_do_differences(source: yarpy.Port, heard: NetworkClock) -> None:
+    before = clock.current()
+    clock.use(heard)
+    try:
+        inside("NetworkClock.wait_until_valid", lambda: source.write([7, 0]))
+        assert clock.monotonic() == 7.0
+    finally:
+        clock.use(before)
+
+
 def test_a_wait_lasts_as_long_as_the_clock_says(source: yarpy.Port, heard: NetworkClock) -> None:
     send(source, heard, 100.0)
     thread = waiting(heard, 1000.0)

@@ -224,6 +224,15 @@ def now() -> float:
     return current().now()
 
 
+def monotonic() -> float:
+    """Return seconds since some moment, for differences; wait for a clock of the network that has
+    not sent any yet."""
+    found = current()
+    if isinstance(found, NetworkClock) and not found.valid:
+        found.wait_until_valid()
+    return found.monotonic()
+
+
 def sleep(seconds: float) -> None:
     """Wait for so many seconds by the clock of this program."""
     current().wait(_NEVER, seconds)

@@ -83,3 +83,45 @@ def test_camera_of_cpp(network: CppYarp) -> None:
         assert "brightness" not in eye.features  # the fake has no knobs
         with pytest.raises(LocalProtocolError):
             eye.crop(0, 0, 99, 99)
+
+
+class Firewire:
+    """The registers of a camera at FireWire that C++ can be told and asked of."""
+
+    video_modes, video_mode, frame_rates, frame_rate = 0x80000021, 69, 6, 34
+    iso_speed, color_coding, bytes_per_packet = 2, 352, 1024
+    window, largest_window = (320, 240, 0, 0), (640, 480, 2, 2, 4, 4)
+    beta_mode, transmission = False, True
+
+    def __init__(self) -> None:
+        self.done: list[object] = []
+
+    def switch_power(self, on: bool) -> None:
+        self.done.append(on)
+
+    def reset(self) -> None:
+        self.done.append("reset")
+
+
+def test_registers_of_firewire(network: CppYarp) -> None:
+    camera, registers = FakeCamera(), Firewire()
+    camera.firewire = registers  # type: ignore[attr-defined]
+    options = {"remote": "/ours", "local": "/between", "name": "/cpp", "period": 0.01}
+    with (
+        FrameGrabberServer("/ours", camera, 0.01),
+        cpp_device(network, "frameGrabber_nws_yarp", subdevice="frameGrabber_nwc_yarp", **options),
+        FrameGrabber("/cpp") as eye,
+    ):
+        there = eye.firewire
+        for name in vars(Firewire):
+            if not (name.startswith("_") or callable(getattr(Firewire, name))):
+                assert getattr(there, name) == getattr(registers, name), name
+        there.switch_power(True)
+        there.reset()
+        assert registers.done == [True, "reset"]
+        if network.version < (4, 0):
+            return  # its server takes its own word for the value of whatever is set
+        there.video_mode, there.iso_speed, there.window = 70, 3, (1, 2, 3, 4)
+        there.transmission = False
+        assert (registers.video_mode, registers.iso_speed) == (70, 3)
+        assert (registers.window, registers.transmission) == ((1, 2, 3, 4), False)

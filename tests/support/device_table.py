@@ -128,13 +128,13 @@ OLDER: Final = {
 ALSO: Final = {"IRGBDSensor": "IDepthVisualParams"}
 
 #: What no C++ here has, or was not asked for when it was recorded.
-_SINCE: Final = (
-    *("ILinearVelocitySensors", "IThreeAxisAngularAccelerometers", "IFrameGrabberControlsDC1394"),
-)
+_SINCE: Final = ("ILinearVelocitySensors", "IThreeAxisAngularAccelerometers")
+#: What was not tried with 3.9.1.
+_NOT_3_9: Final = ("IFrameGrabberControlsDC1394",)
 #: What only boards of 4.0 have.
 _BOARD_4: Final = ("IJointBrake", "IVelocityDirect")
 #: What was not tried with 4.0.0.
-_NOT_4: Final = ("AnalogSensor", "Joypad", "VirtualAnalogServer")
+_NOT_4: Final = ("AnalogSensor", "VirtualAnalogServer")
 
 _ALONE: Final = "C++ has no server or client of it: it stays within a program"
 _OLD: Final = "C++ has none of it any more"
@@ -189,6 +189,7 @@ def table() -> str:
         rest = {"3.5": NEWER, "3.9.1": LATEST, **({} if name in _NOT_4 else {"4.0.0": set()})}
         tried = [version for version, others in rest.items() if among - others]
         tried = ["4.0.0"] if each in _BOARD_4 else tried
+        tried = [version for version in tried if version != "3.9.1" or each not in _NOT_3_9]
         tried[:1] = [f"C++ {version}" for version in tried[:1]]
         tried = [] if each in _SINCE else tried
         lines.append(f"| `{each}` | `{name}` ✔ | {there} | {view} | {', '.join(tried)} |")

@@ -1,13 +1,16 @@
 """Devices without hardware as devices of a robot's file."""
 
+import threading
+from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
 import pytest
 
-from yarpy import Bottle, Property
+from yarpy import Bottle, Property, clock
 from yarpy.kits import devices
 from yarpy.kits.devices.simulated import plugin
+from yarpy.kits.devices.transforms.frames import Frames
 from yarpy.registry import devices as plugins
 
 
@@ -19,6 +22,49 @@ def test_every_type_of_the_table_opens() -> None:
     }
     assert isinstance(opened["fakeBattery"], devices.SimulatedBattery)
     assert {*opened} == {*plugin._WITHOUT_OPTIONS}
+
+
+class Told:
+    """A clock that says what it is told."""
+
+    seconds = 1000.0
+
+    def now(self) -> float:
+        return self.seconds
+
+    def monotonic(self) -> float:
+        return self.seconds
+
+    def wait(self, event: threading.Event, seconds: float) -> bool:
+        raise AssertionError("nobody waits")
+
+
+@pytest.fixture
+def told() -> Iterator[Told]:
+    made, before = Told(), clock.current()
+    clock.use(made)
+    yield made
+    clock.use(before)
+
+
+def test_they_live_by_the_clock_of_the_program(told: Told) -> None:
+    imu, sensor = devices.SimulatedImu(), devices.SimulatedPositionSensor()
+    assert {*imu.timestamps().values(), *sensor.timestamps().values()} == {1000.0}
+    battery, base = devices.SimulatedBattery(), devices.SimulatedBase()
+    camera, deep = devices.SimulatedCamera(32, 24), devices.SimulatedDepthCamera(32, 24)
+    microphone, frames = devices.SimulatedMicrophone(), Frames()
+    microphone.start()
+    base.apply_velocity(1.0, 0.0, 0.0, 60.0)
+    frames.place("eye", "head")
+    picture, depth = camera.image(), deep.depth().array
+    assert battery.charge() == 100.0 and frames.all()
+    told.seconds += 0.1
+    assert frames.all() and (camera.image() != picture).any()
+    told.seconds += 1.9
+    assert battery.charge() < 100.0 and base.odometry().odom_x == pytest.approx(2.0)
+    assert (deep.depth().array != depth).any()
+    assert not frames.all(), "nobody has told it again"
+    assert {*imu.timestamps().values(), *sensor.timestamps().values()} == {1002.0}
 
 
 def test_cameras_have_the_size_that_is_asked_for() -> None:

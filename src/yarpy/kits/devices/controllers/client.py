@@ -14,6 +14,7 @@ from collections.abc import Callable, Sequence
 from contextlib import ExitStack, suppress
 from typing import Any, ClassVar, Final, NamedTuple
 
+from yarpy import clock
 from yarpy.data.bottle import Bottle
 from yarpy.data.sig.vector import Vector
 from yarpy.data.value import Vocab
@@ -219,7 +220,7 @@ class ControllerClient(Closeable):
             return
         kind = str(found[0])
         share = float(found[2]) if kind == "motion-ongoing" and len(found) > 2 else None
-        event = Event(kind, float(found[1]) if len(found) > 1 else time.time(), share)
+        event = Event(kind, float(found[1]) if len(found) > 1 else clock.now(), share)
         for key in (("*", None), (kind, share)):
             callback = self._heard.get(key)
             if callback is not None:

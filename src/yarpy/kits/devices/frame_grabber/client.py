@@ -14,11 +14,11 @@ Source: frameGrabber_nwc_yarp of YARP 3.x and 4.0.
 
 from __future__ import annotations
 
-import time
 from collections.abc import Iterator, MutableMapping, Sequence
 from contextlib import ExitStack
 from typing import Any, Final
 
+from yarpy import clock
 from yarpy.data.bottle import Bottle, Property
 from yarpy.data.sig.image import Image
 from yarpy.data.stamp import Stamp
@@ -80,7 +80,7 @@ class FrameGrabber(Closeable):
             raise Timeout(
                 f'no image came from "{self.remote}" for {timeout} s: is the camera on?'
             ) from error
-        self.stamp = message.stamp or Stamp(self.stamp.count + 1, time.time())
+        self.stamp = message.stamp or Stamp(self.stamp.count + 1, clock.now())
         return message.as_(Image)
 
     def __iter__(self) -> Iterator[Image]:

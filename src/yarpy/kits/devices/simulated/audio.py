@@ -8,11 +8,11 @@ forgotten. Thread-safe.
 from __future__ import annotations
 
 import threading
-import time
 from collections.abc import Callable
 from typing import Final
 
 import yarpy
+from yarpy import clock
 from yarpy.kits.devices.interfaces.media import AudioSize, AudioStatus
 from yarpy.kits.devices.refusal import Refused
 
@@ -24,7 +24,7 @@ KEPT: Final = 10 * RATE
 class SimulatedMicrophone:
     """Every member of `interfaces.audio.AudioRecorder`."""
 
-    def __init__(self, clock: Callable[[], float] = time.monotonic, tone: float = 440.0) -> None:
+    def __init__(self, clock: Callable[[], float] = clock.monotonic, tone: float = 440.0) -> None:
         self._clock = clock
         self._tone = tone
         self._lock = threading.Lock()  # what is taken is gone
@@ -102,7 +102,7 @@ class SimulatedMicrophone:
 class SimulatedSpeaker:
     """Every member of `interfaces.audio.AudioPlayer`. `played`: how many samples were played."""
 
-    def __init__(self, clock: Callable[[], float] = time.monotonic) -> None:
+    def __init__(self, clock: Callable[[], float] = clock.monotonic) -> None:
         self._clock = clock
         self._lock = threading.Lock()  # what is played is moved from one list to the other
         self._waiting: list[yarpy.Sound] = []

@@ -13,11 +13,11 @@ from __future__ import annotations
 
 import math
 import threading
-import time
 from collections.abc import Callable
 from typing import Final
 
 import yarpy
+from yarpy import clock
 from yarpy.kits.devices.interfaces.place import Odometry, Path, Place
 from yarpy.kits.devices.refusal import Refused
 
@@ -29,7 +29,7 @@ TURN: Final = 60.0
 class SimulatedBase:
     """A base, at the origin of the map `map_id` first."""
 
-    def __init__(self, map_id: str = "map", clock: Callable[[], float] = time.monotonic) -> None:
+    def __init__(self, map_id: str = "map", clock: Callable[[], float] = clock.monotonic) -> None:
         self._clock = clock
         self._lock = threading.RLock()  # each method counts on the time that another has advanced
         self._at = clock()

@@ -5,9 +5,10 @@ Rules: it lives by the clock that it is given, and lasts `LASTS` seconds.
 
 from __future__ import annotations
 
-import time
 from collections.abc import Callable
 from typing import Final
+
+from yarpy import clock
 
 #: Seconds from full to empty.
 LASTS: Final = 3600.0
@@ -18,7 +19,7 @@ class SimulatedBattery:
 
     info = "a simulated battery, 24 V"
 
-    def __init__(self, clock: Callable[[], float] = time.monotonic) -> None:
+    def __init__(self, clock: Callable[[], float] = clock.monotonic) -> None:
         self._clock = clock
         self._begin = clock()
 

@@ -5,8 +5,9 @@ Rules: it has the members that `frame_grabber.interface` describes.
 
 from __future__ import annotations
 
-import time
 from typing import Any
+
+from yarpy import clock
 
 
 class SimulatedCamera:
@@ -17,7 +18,7 @@ class SimulatedCamera:
     def __init__(self, width: int = 320, height: int = 240) -> None:
         self.resolution = (width, height)
         self.features = {"brightness": 0.5, "gain": 0.5}
-        self._begin = time.monotonic()
+        self._begin = clock.monotonic()
 
     def image(self) -> Any:
         """The picture at this time."""
@@ -26,5 +27,5 @@ class SimulatedCamera:
         width, height = self.resolution
         picture = np.zeros((height, width, 3), "u1")
         picture[:, :, 2] = 80
-        picture[int((time.monotonic() - self._begin) * 30) % height] = 255
+        picture[int((clock.monotonic() - self._begin) * 30) % height] = 255
         return picture

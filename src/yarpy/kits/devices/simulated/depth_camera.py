@@ -7,11 +7,11 @@ gain. Its lens is that of a pinhole camera.
 from __future__ import annotations
 
 import math
-import time
 from collections.abc import Callable
 from typing import Any, Final
 
 import yarpy
+from yarpy import clock
 from yarpy.data.value import Vocab
 from yarpy.kits.devices.frame_grabber.interface import FEATURES
 from yarpy.kits.devices.interfaces.media import Configuration, When
@@ -28,7 +28,7 @@ class SimulatedDepthCamera:
     """Most members of `interfaces.depth.DepthCamera`: all but what it has no feature for."""
 
     def __init__(
-        self, width: int = 320, height: int = 240, clock: Callable[[], float] = time.monotonic
+        self, width: int = 320, height: int = 240, clock: Callable[[], float] = clock.monotonic
     ) -> None:
         self._clock = clock
         self._size = width, height

@@ -6,10 +6,11 @@ nowhere. One that is constant does not turn.
 
 from __future__ import annotations
 
-import time
 from collections.abc import Callable
 from math import cos, radians, sin
 from typing import Final
+
+from yarpy import clock
 
 #: Degrees per second.
 SPEED: Final = 100.0
@@ -29,7 +30,7 @@ class SimulatedImu:
         frame: str = "frameName",
         *,
         constant: bool = False,
-        clock: Callable[[], float] = time.time,
+        clock: Callable[[], float] = clock.now,
     ) -> None:
         self.frames = {name: frame}
         self._name = name

@@ -7,9 +7,10 @@ fast the other way round.
 
 from __future__ import annotations
 
-import time
 from collections.abc import Callable
 from typing import Final
+
+from yarpy import clock
 
 #: Metres, and degrees, per second: what C++ adds in its usual period of 20 ms.
 SPEED: Final = 0.05
@@ -26,7 +27,7 @@ class SimulatedPositionSensor:
         name: str = "sensorName",
         frame: str = "frameName",
         *,
-        clock: Callable[[], float] = time.time,
+        clock: Callable[[], float] = clock.now,
     ) -> None:
         self.frames = {name: frame}
         self._name = name

@@ -11,11 +11,11 @@ Source: frameTransformSet_nwc_yarp and frameTransformGet_nwc_yarp of YARP 3.x an
 
 from __future__ import annotations
 
-import time
 from collections.abc import Sequence
 from contextlib import ExitStack
 from typing import TYPE_CHECKING, Any, Final
 
+from yarpy import clock
 from yarpy.data.bottle import Bottle
 from yarpy.data.yarp4 import to_yarp4
 from yarpy.errors import DecodeError, LocalProtocolError, RemoteProtocolError
@@ -82,7 +82,7 @@ class TransformClient(Closeable):
     ) -> None:
         """`frame` is there, seen from `parent`: metres, and a quaternion x y z w. What is not
         constant has to be told again and again. Raises ValueError, LocalProtocolError."""
-        made = transform(frame, parent, position, rotation, constant, time.time())
+        made = transform(frame, parent, position, rotation, constant, clock.now())
         self._tell("setTransformRPC", made.to_bottle())
 
     def remove(self, frame: str, parent: str) -> None:

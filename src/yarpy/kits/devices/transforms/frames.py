@@ -12,11 +12,11 @@ seconds after it was measured. No frame is, through others, its own parent.
 from __future__ import annotations
 
 import threading
-import time
 from collections.abc import Callable, Iterable, Sequence
 from math import hypot, isfinite
 from typing import TYPE_CHECKING, Any, Final
 
+from yarpy import clock
 from yarpy.kits.devices.transforms.functions import Transform
 
 if TYPE_CHECKING:
@@ -30,7 +30,7 @@ LONGEST: Final = 200
 class Frames:
     """The frames. Any thread may use them. `now` is the clock, in seconds."""
 
-    def __init__(self, expiry: float = 0.2, now: Callable[[], float] = time.time) -> None:
+    def __init__(self, expiry: float = 0.2, now: Callable[[], float] = clock.now) -> None:
         self.expiry = expiry
         self._now = now
         self._lock = threading.Lock()  # guards the dict
