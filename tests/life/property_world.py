@@ -26,7 +26,7 @@ from property_program import DATA, Program, Slot, Step
 import yarpy
 from yarpy import aio
 
-MARGIN: Final = 8.0  # seconds beyond its limit that an operation may take on a loaded machine
+MARGIN: Final = 20.0  # seconds beyond its limit that an operation may take on a loaded machine
 SETTLING: Final = 6.0  # seconds for threads and descriptors to go
 SERVICES: Final = ("yarpy accept", "yarpy reconnect", "yarpy aio")  # of the process, not of ports
 CHILD: Final = """
