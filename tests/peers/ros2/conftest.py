@@ -15,6 +15,7 @@ __all__ = ["names", "no_settings", "router"]
 @pytest.fixture(scope="module")
 def router() -> Iterator[int]:
     """Its number; this process finds it, and nothing of ROS 2 that is installed."""
+    pytest.importorskip("zenoh", reason='Zenoh: pip install "yarpy[zenoh]"')
     with ros2_router() as port, pytest.MonkeyPatch.context() as patch:
         patch.setenv("YARPY_ZENOH", f"127.0.0.1:{port}")
         patch.delenv("ROS_DOMAIN_ID", raising=False)
