@@ -49,7 +49,6 @@ ALLOWED = {
     "yarpy.network.asking",
     "yarpy.network.connection",
     "yarpy.network.qos",
-    "yarpy.platform.console",
     "yarpy.platform.folders",
     "yarpy.qos",
     "yarpy.registry",
