@@ -11,7 +11,9 @@ from support.cpp import CppYarp
 from support.cpp_device import PATIENT, between, device_host
 from support.wait import HANG, wait_until
 
+import yarpy
 from yarpy.kits import devices
+from yarpy.kits.devices.analog.virtual import Network
 from yarpy.kits.devices.interfaces.joypad import Point, Touch
 
 pytestmark = pytest.mark.peer("g++")
@@ -143,3 +145,23 @@ def test_a_joypad(network: CppYarp, together: bool) -> None:
         if pad.state.sticks:
             pad.state.sticks[1] = Point(0.25, -0.75)
             wait_until(lambda: client.sticks().value == [Point(), Point(0.25, -0.75)])
+
+
+def test_torques_that_cpp_estimates(network: CppYarp) -> None:
+    """For what is called virtualAnalogServer there."""
+    told: list[list[float]] = []
+
+    class Motors:
+        def update_measures(self, values: list[float]) -> None:
+            told.append([*values])
+
+    networks = {"arm": Network(0, 5, 0, 5)}
+    with (
+        devices.VirtualAnalogServer("/ours", {"arm": Motors()}, networks),
+        network.popen("write", "/tool/cpp", "/ours") as writer,
+    ):
+        writer.wait_line("Port /tool/cpp active")
+        yarpy.wait_for("/tool/cpp", timeout=HANG)
+        wait_until(lambda: yarpy.is_connected("/tool/cpp", "/ours"))
+        writer.write_line("1 0.5 1.5 2.5 3.5 4.5")
+        wait_until(lambda: [0.5, 1.5, 2.5, 3.5, 4.5, 0.0] in told)
