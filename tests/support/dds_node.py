@@ -16,7 +16,9 @@ Each is answered by ["done", VERB, ...].
 """
 
 import json
+import queue
 import sys
+import threading
 import time
 from dataclasses import dataclass
 from typing import Any
@@ -225,15 +227,22 @@ class Node:
 
 
 def main() -> None:
-    import select
-
     node = Node()
+    lines: queue.Queue[str] = queue.Queue()
+
+    def read() -> None:  # a thread: Windows waits for sockets alone
+        for line in sys.stdin:
+            lines.put(line)
+        lines.put("")
+
+    threading.Thread(target=read, daemon=True).start()
     print(json.dumps("ready"), flush=True)
     while True:
-        if not select.select([sys.stdin], [], [], 0.0)[0]:
+        try:
+            line = lines.get_nowait()
+        except queue.Empty:
             node.step()
             continue
-        line = sys.stdin.readline()
         if not line:
             return
         words = json.loads(line)
