@@ -26,7 +26,7 @@ def with_addresses() -> None:
         writer.connect(f"/{reader.address}")
         writer.write(f"to {reader.address.split(':')[0]}, without any name")
         print(reader.read(timeout=5).value)
-        print(yarpy.ping(f"tcp://{reader.address}/")[-1])
+        print(*yarpy.ping(f"tcp://{reader.address}/"), sep="\n")
 
 
 def asked_by_address() -> None:

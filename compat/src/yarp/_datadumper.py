@@ -76,7 +76,7 @@ class Dumper(yarpy.Module):
         return True
 
     def update(self) -> bool:
-        return not self.recorder.ended.is_set()
+        return not self.recorder.ended.is_set
 
     def respond(self, request: yarpy.Bottle) -> object:
         if request and plain_text(request[0]) in ("quit", "exit", "bye"):

@@ -10,7 +10,6 @@ Rules: only for waits in which a main thread may be; no other one hears of signa
 from __future__ import annotations
 
 import sys
-import threading
 import time
 from _thread import LockType, allocate_lock
 from typing import Final
@@ -32,17 +31,9 @@ def acquire(lock: LockType, until: float | None = None) -> bool:
             return False
 
 
-def wait(event: threading.Event | None = None, seconds: float | None = None) -> bool:
-    """Wait until `event` is set, or so many seconds are over; return whether it is set. None: of
-    neither kind, so that only an exception out of a signal handler ends it."""
-    until = None if seconds is None else time.monotonic() + seconds
-    if event is None:  # an Event is not whole where an exception comes between two of its steps
-        lock = allocate_lock()
-        lock.acquire()
-        return acquire(lock, until)
-    while True:
-        left = _MOST if until is None else until - time.monotonic()
-        if event.wait(max(0.0, min(left, _MOST))):
-            return True
-        if until is not None and left <= _MOST:
-            return False
+def wait(seconds: float | None = None) -> None:
+    """Wait until so many seconds are over; None: so that only an exception out of a signal handler
+    ends it. An Event of Python would not be whole where that comes between two of its steps."""
+    lock = allocate_lock()
+    lock.acquire()
+    acquire(lock, None if seconds is None else time.monotonic() + seconds)

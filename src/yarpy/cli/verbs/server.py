@@ -323,7 +323,8 @@ def _serve(
         if web is not None:
             say(f"Files of {web} are shown at {where}web/")
         say("Ok. Ready!")
-        while not waiting.wait(seconds=HAPPY):
+        while True:
+            waiting.wait(HAPPY)
             say("Name server running happily")
     finally:
         service.close()

@@ -194,7 +194,7 @@ def test_a_full_disk_ends_it_cleanly(tmp_path, names, out) -> None:
         wait_until(lambda: told == ["9 B are left on the disk"])
         left[0] = 1
         for number in itertools.count(2):  # what was on its way to the disk is there, or lost
-            if recorder.ended.is_set():
+            if recorder.ended.is_set:
                 break
             out.write([number], wait=True)
         assert recorder.failure == "the disk is full but for 1 B: recording stops"
@@ -222,7 +222,7 @@ def test_a_disk_of_half_a_megabyte(small, names, out) -> None:
         out.write([0, bytes(20_000)])
         wait_until(lambda: recorder.size > 20_000)
         sent = 1
-        while not recorder.ended.is_set() and sent < 1000:
+        while not recorder.ended.is_set and sent < 1000:
             assert out.write([sent, bytes(20_000)], timeout=HANG) == 1
             sent += 1
         assert recorder.ended.wait(HANG)

@@ -40,6 +40,7 @@ from yarpy.log import logger
 from yarpy.names.base import NameClient
 from yarpy.port.connection import ConnectionEvent
 from yarpy.route import parse_carrier
+from yarpy.scope import Flag
 
 log = logger("yarpy.record")
 
@@ -124,7 +125,7 @@ class Recorder:
         self._losses = Losses(self._queue.counts)
         self._wishes: deque[Callable[[], None]] = deque()
         self._closing = threading.Event()
-        self.ended = threading.Event()
+        self.ended = Flag()
         self.failure = ""
         where = without_ending(path)
         self._disk = room or DiskSpace(where.parent)

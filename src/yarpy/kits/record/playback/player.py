@@ -28,8 +28,8 @@ from yarpy.kits.record.playback.topic import open_topic
 from yarpy.kits.record.recorded import PortFacts, Recorded
 from yarpy.kits.record.recording import Recording
 from yarpy.names.base import NameClient
-from yarpy.platform import waiting
 from yarpy.port.port import Port
+from yarpy.scope import Waiter
 
 READER_TIMEOUT: Final = 0.5  # seconds that a reader may keep a message waiting, once
 RATES: Final = (0.001, 1000.0)  # the slowest and the fastest
@@ -94,7 +94,7 @@ class Player:
         self._jumped = False
         self._target = self.begin  # where to go on from
         self._range: tuple[int, int] | None = None  # what is played again and again
-        self._changed = threading.Event()
+        self._changed = Waiter()
         self._closed = threading.Event()
         self._lock = threading.Lock()  # of the time line, which other threads change
         self.played = 0
@@ -182,7 +182,7 @@ class Player:
     def rate(self, rate: float) -> None:
         with self._lock:
             self._timeline.pace(_checked(rate), time.monotonic())
-        self._changed.set()
+        self._changed.wake()
 
     @property
     def paused(self) -> bool:
@@ -193,14 +193,14 @@ class Player:
         """Let time stand still, until `resume`."""
         with self._lock:
             self._timeline.stop(time.monotonic())
-        self._changed.set()
+        self._changed.wake()
 
     def resume(self) -> None:
         """Go on."""
         with self._lock:
             self._steps = 0
             self._timeline.start(time.monotonic())
-        self._changed.set()
+        self._changed.wake()
 
     def seek(self, position: float) -> None:
         """Go on from there, in seconds from the beginning of what is played."""
@@ -208,7 +208,7 @@ class Player:
         with self._lock:
             self._timeline.jump(moment, time.monotonic())
             self._target, self._jumped, self._passed = moment, True, {}
-        self._changed.set()
+        self._changed.wake()
 
     def seek_mark(self, text: str) -> None:
         """Go on from the moment that was marked with that text. Raises UnknownName."""
@@ -247,12 +247,12 @@ class Player:
         with self._lock:
             self._timeline.stop(time.monotonic())
             self._steps += 1
-        self._changed.set()
+        self._changed.wake()
 
     def stop(self) -> None:
         """Let `play` return. Any thread may call it."""
         self._stopped = True
-        self._changed.set()
+        self._changed.wake()
 
     def wait_for_readers(self) -> bool:
         """Wait until each port is connected; return False if `stop` comes first."""
@@ -260,7 +260,6 @@ class Player:
             if all(port.outputs for port in self._ports.values()):
                 return True
             self._changed.wait(_WAIT)
-            self._changed.clear()
         return False
 
     def play(self, paused: bool = False) -> bool:
@@ -305,7 +304,6 @@ class Player:
 
     def _wait_until(self, moment: int) -> bool:
         """Wait until a message is due; return False if it is not wanted any more."""
-        changed = self._changed
         while True:
             with self._lock:
                 if self._stopped or self._jumped:
@@ -320,8 +318,7 @@ class Player:
             if left is not None and left <= 0:
                 self.latest = max(self.latest, -left)
                 return True
-            if waiting.wait(changed, left):
-                changed.clear()
+            self._changed.wait(left)
 
     def _value(self, recorded: Recorded) -> Any:
         """Return what is written: for a topic of ROS the object, which says the type; else its

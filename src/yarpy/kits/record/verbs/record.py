@@ -29,7 +29,6 @@ from yarpy.cli.output import print_json, print_line
 from yarpy.cli.signals import Interrupted
 from yarpy.cli.stderr import complain, warn
 from yarpy.errors import LocalProtocolError
-from yarpy.platform import waiting
 from yarpy.port.rpc import RpcServer
 
 if TYPE_CHECKING:
@@ -174,7 +173,7 @@ def command(
                 _live(recorder, began, duration, news)
             else:
                 click.echo(f"{beginning(recorder)}; {shown}", err=True)
-                waiting.wait(stop, duration)
+                stop.wait(duration)
     except Interrupted:
         pass  # how it ends
     finally:
@@ -312,7 +311,7 @@ def _live(
     seen, console, typing = Rates(), Console(highlight=False), Keys(recorder, news)
     until = None if duration is None else began + duration
     with keys() as pressed, Live(console=console, auto_refresh=False, screen=True) as live:
-        while not recorder.ended.is_set() and (until is None or time.monotonic() < until):
+        while not recorder.ended.is_set and (until is None or time.monotonic() < until):
             size = shutil.get_terminal_size((80, 24))
             status = status_of(recorder, began, seen, [*news, *typing.shown])
             live.update(text(status, size.columns, size.lines), refresh=True)

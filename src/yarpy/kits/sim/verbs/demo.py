@@ -94,7 +94,7 @@ def command(seconds: float | None, no_browser: bool, lan: bool) -> int:
             print_line(_advice(server, robot, page, elsewhere))
             if not no_browser:
                 open_page(url_of(page.address))
-            waiting.wait(seconds=seconds)
+            waiting.wait(seconds)
     except signals.Interrupted:
         pass
     print_line("The demo ends.")
