@@ -1,6 +1,7 @@
 """Types of ROS 2 by name, and the version of one that a peer has."""
 
 import copy
+import os
 import pickle
 from pathlib import Path
 
@@ -35,7 +36,7 @@ def test_installed_packages(tmp_path: Path) -> None:
     (folder / "msg" / "Arm.msg").write_text("float64[<=7] angles\nHand hand\n")
     (folder / "msg" / "Hand.msg").write_text("uint8 fingers 5\n")
     (folder / "srv" / "Wave.srv").write_text("Arm arm\n---\n")
-    library = Library([installed({"AMENT_PREFIX_PATH": f"/nowhere:{tmp_path}"})])
+    library = Library([installed({"AMENT_PREFIX_PATH": f"/nowhere{os.pathsep}{tmp_path}"})])
     arm = library.message("robot_msgs/msg/Arm")()
     assert (arm.hand.fingers, arm.angles.tolist()) == (5, [])  # type: ignore[attr-defined]
     assert library.service("robot_msgs/Wave").Request().arm == arm  # type: ignore[attr-defined]

@@ -1,5 +1,6 @@
 """Where definitions of ROS 2 come from."""
 
+import os
 from pathlib import Path
 
 from yarpy.peers.ros2.message.source import Rosbags, Standard, distro, installed
@@ -20,7 +21,7 @@ def test_distribution() -> None:
 
 
 def test_prefixes() -> None:
-    assert [*installed({"AMENT_PREFIX_PATH": "/a::/b"}).shares] == [
+    assert [*installed({"AMENT_PREFIX_PATH": os.pathsep.join(("/a", "", "/b"))}).shares] == [
         Path("/a/share"),
         Path("/b/share"),
     ]
