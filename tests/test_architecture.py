@@ -406,6 +406,19 @@ def test_modules_have_their_test_files() -> None:
     assert missing == []
 
 
+def test_no_group_is_repeated_possessively() -> None:
+    """Python before 3.11.5, as Debian 12 has it, matches `(?:ab?)*+` wrongly: `(?>(?:ab?)*)` is the
+    same, and right there."""
+    group = re.compile(r"[^\\]\)(?:[*+?]|\{[^}]*\}{1,2})\+")
+    places = [
+        f"{relative(path)}:{number}"
+        for path in [*FILES, *(ROOT / "compat").rglob("*.py")]
+        for number, line in enumerate(path.read_text("utf-8").splitlines(), 1)
+        if group.search(line)
+    ]
+    assert places == []
+
+
 def test_nothing_unix_only_is_imported_at_module_level() -> None:
     wrong = []
     for path in FILES:

@@ -49,7 +49,7 @@ _WORD = re.compile(rb"[^, \t\r\n]++")
 
 #: The same where quotes are allowed: an even number of them closes each that was opened.
 _DEEPER = re.compile(rb"[\\(){}]")
-_TOKEN = re.compile(rb'(?:"[^"]*+"|[^", \t\r\n]++)++')
+_TOKEN = re.compile(rb'(?>(?:"[^"]*+"|[^", \t\r\n]++)+)')
 _SEPARATORS: Final = bytes.maketrans(b",\t\r\n", b"    ")
 
 #: Leading zeros, signs and x, then digits: anything else makes a token a word.

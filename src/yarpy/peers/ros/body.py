@@ -30,7 +30,7 @@ Kind: TypeAlias = "type[Ros] | None"
 #: what a message of one element is, where the element is one of these
 SCALARS: Final = (str, int, float)
 _STAMP: Final = Struct("<III")
-_ENVELOPE: Final = re.compile(rb"\s*+([+-]?\d{1,10}+)\s++(\d{1,10}+)(?:\.(\d{1,9}+)\d*+)?+")
+_ENVELOPE: Final = re.compile(rb"\s*+([+-]?\d{1,10}+)\s++(\d{1,10}+)(?>(?:\.(\d{1,9}+)\d*+)?)")
 
 
 class RosMessage(Message):

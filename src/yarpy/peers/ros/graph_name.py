@@ -60,7 +60,7 @@ def check_graph_name(name: str) -> str:
     '/motor/state__o'
     """
     found = ros_name(name)
-    if not re.fullmatch(r"/[A-Za-z][A-Za-z0-9_]*+(?:/[A-Za-z0-9_]++)*+", found):
+    if not re.fullmatch(r"/[A-Za-z][A-Za-z0-9_]*+(?>(?:/[A-Za-z0-9_]++)*)", found):
         raise AddressError(
             f'ROS has no names like "{name[:80]}": those have letters, digits, "_" and "/" alone, '
             "begin with a letter, and do not end with a slash"

@@ -13,7 +13,7 @@ from yarpy.errors import AddressError
 
 MOST: Final = 250  # characters of a name
 _PART = re.compile(r"[A-Za-z_][A-Za-z0-9_]*+")
-_NAME = re.compile(rf"(?:/{_PART.pattern})++")
+_NAME = re.compile(rf"(?>(?:/{_PART.pattern})+)")
 
 
 class Node(NamedTuple):

@@ -21,7 +21,7 @@ from yarpy.names.base import NameClient
 from yarpy.port.port import Port
 
 _NODE: Final = re.compile(
-    r"(?:(/[A-Za-z]\w*+)++|[a-z]\w*+(\+[^/:]++)*+://[A-Za-z]\w*+(/\w++)*+)", re.A
+    r"(?:(?>(/[A-Za-z]\w*+)+)|[a-z]\w*+(?>(\+[^/:]++)*)://[A-Za-z]\w*+(?>(/\w++)*))", re.A
 )
 _TYPE: Final = re.compile(r"(?!yarp/)(\w++)/(?:msg/)?(\w++)", re.ASCII)
 

@@ -35,7 +35,7 @@ NO_LITERAL: Final = (
 
 _WORD: Final = r"[A-Za-z][A-Za-z0-9_]*+"
 _NAME = re.compile(rf"{_WORD}/{_WORD}")
-_TYPE = re.compile(rf"({_WORD}(?:/{_WORD})?+)(\[(\d{{0,10}}+)\])?+")
+_TYPE = re.compile(rf"({_WORD}(?>(?:/{_WORD})?))(?>(\[(\d{{0,10}}+)\])?)")
 _FIELD_NAME = re.compile(_WORD)
 
 

@@ -39,8 +39,8 @@ _TEXTS: Final = ("string", "wstring")
 
 _WORD: Final = r"[A-Za-z][A-Za-z0-9_]*+"
 _LINE: Final = re.compile(
-    rf"(?P<base>{_WORD}(?:/{_WORD}){{0,2}}+)(?:<=(?P<chars>\d{{1,10}}+))?+"
-    r"(?P<list>\[(?:(?P<bound><=)?+(?P<length>\d{1,10}+))?+\])?+"
+    rf"(?P<base>{_WORD}(?>(?:/{_WORD}){{0,2}}))(?>(?:<=(?P<chars>\d{{1,10}}+))?)"
+    r"(?>(?P<list>\[(?>(?:(?>(?P<bound><=)?)(?P<length>\d{1,10}+))?)\])?)"
     rf"[ \t]++(?P<name>{_WORD})(?P<rest>.*)",
     re.DOTALL,
 )
