@@ -78,9 +78,9 @@ NAME: /[A-Za-z_][A-Za-z0-9_.]*+/
 HEX.3: /[+-]?0x[0-9A-Fa-f]++/
 DOUBLE.2: /[+-]?(\d*+\.\d++([eE][+-]?\d++)?|\d++[eE][+-]?\d++)/
 INT.1: /[+-]?\d++/
-STRING: /"(?>(\\.|[^"\\\n])*)"|'(?>(\\.|[^'\\\n])*)'/
+STRING: /"[^"\\\n]*+(?>(\\.[^"\\\n]*+)*)"|'[^'\\\n]*+(?>(\\.[^'\\\n]*+)*)'/
 _SEP: /[,;]/
-COMMENT: /\/\/[^\n]*+|#[^\n]*+|\/\*(?>([^*]|\*(?!\/))*)\*\//
+COMMENT: /\/\/[^\n]*+|#[^\n]*+|\/\*[^*]*+(?>(\*(?!\/)[^*]*+)*)\*\//
 SPACE: /\s++/
 %ignore COMMENT
 %ignore SPACE
@@ -93,7 +93,7 @@ _WORDS: Final = {
     "MORETHAN": '">"', "EQUAL": '"="', "COLON": '":"', "COMMA": '","', "STAR": '"*"',
 }  # fmt: skip
 _ESCAPES: Final = {"n": "\n", "r": "\r", "t": "\t"}
-_BETWEEN: Final = re.compile(r"(?>(?:\s|//[^\n]*+|#[^\n]*+)*)")
+_BETWEEN: Final = re.compile(r"(?>(?:\s++|//[^\n]*+|#[^\n]*+)*)")
 _MARGIN: Final = re.compile(r"^[ \t]*+\*?[ \t]?", re.MULTILINE)
 
 
@@ -161,8 +161,8 @@ class _Reading:
             (found.end(), found[0])
             for found in re.finditer(
                 # What lacks its end is skipped as far as it goes, and not tried again within.
-                r"\"(?>(?:\\.|[^\"\\\n])*)\"?|'(?>(?:\\.|[^'\\\n])*)'?|//[^\n]*+|#[^\n]*+"
-                r"|/\*(?>(?:[^*]|\*(?!/))*)(?:\*/)?",
+                r"\"[^\"\\\n]*+(?>(?:\\.[^\"\\\n]*+)*)\"?|'[^'\\\n]*+(?>(?:\\.[^'\\\n]*+)*)'?"
+                r"|//[^\n]*+|#[^\n]*+|/\*[^*]*+(?>(?:\*(?!/)[^*]*+)*)(?:\*/)?",
                 text,
             )
             if found[0].startswith("/**") and found[0].endswith("*/") and len(found[0]) > 4

@@ -24,7 +24,7 @@ from yarpy.limit import HTTP_CHALLENGE_VALUE, HTTP_CHALLENGES
 from yarpy.route import Route
 
 _STRENGTH: Final = {"md5": 1, "sha-256": 2}
-_PIECE: Final = re.compile(r'(?>(?:[^,"]|"(?>(?:[^"\\]|\\.)*)"?+)+)')
+_PIECE: Final = re.compile(r'(?>(?:[^,"]++|"[^"\\]*+(?>(?:\\.[^"\\]*+)*)"?+)+)')
 _PARAMETER: Final = re.compile(r"(?:([^\s=\"]++)\s++(?!=))?([^\s=\"]++)\s*+=\s*+(.*)")
 _CONTROL: Final = re.compile(r"[\x00-\x1f\x7f]")
 

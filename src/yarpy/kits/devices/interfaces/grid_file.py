@@ -50,7 +50,7 @@ _READ: Final = (CELLS.index("free"), CELLS.index("keep out"), _WALL, _UNSEEN)
 _GREY_UNKNOWN: Final = 205
 _GREY_FREE: Final = 254
 _TEXT: Final = 65536  # bytes of a .map or .yaml: they have a few lines
-_PICTURE: Final = re.compile(rb"(P[56])" + rb"(?>(?:\s|#[^\n]*\n)+)(\d{1,9})" * 3 + rb"\s")
+_PICTURE: Final = re.compile(rb"(P[56])" + rb"(?>(?:\s++|#[^\n]*\n)+)(\d{1,9})" * 3 + rb"\s")
 
 
 def coloured(cells: Any) -> NDArray[Any]:
