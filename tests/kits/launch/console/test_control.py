@@ -122,8 +122,12 @@ def test_an_application_is_reached_from_other_programs(cli) -> None:
     path.write_text(f"[programs.a]\ncommand = {json.dumps(program)}\n")
     with cli.start("up", str(path), "--lines") as up:
         up.wait_line(r"a \| up", timeout=2 * HANG)
-        told = json.loads(cli.run("status", "--json").stdout)
-        assert [one["state"] for one in told["programs"]] == ["running"]
+
+        def states() -> list[str]:
+            told = json.loads(cli.run("status", "--json").stdout)
+            return [one["state"] for one in told["programs"]]
+
+        wait_until(lambda: states() == ["running"])  # it speaks before `up` knows that it has begun
         assert "up" in cli.run("logs").stdout
         assert cli.run("stop", "a").returncode == 0
         up.wait_line(r"\* a stopped")
