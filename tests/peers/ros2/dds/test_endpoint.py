@@ -12,6 +12,7 @@ from support.dds_program import Peer
 from support.wait import HANG, wait_until
 
 import yarpy
+from yarpy.peers.ros2.dds.endpoint import DdsPublisher
 
 RELIABILITY = ("reliable", "best_effort")
 DURABILITY = ("volatile", "transient_local")
@@ -111,6 +112,31 @@ def test_the_first_message_reaches_who_asks_for_kept_ones(peer: Peer, topic: str
         wait_until(lambda: peer.do("events", name)[0]["alive"] == 1)  # type: ignore[index]
         out.write("map")
         wait_until(lambda: peer.heard(name) == ["map"])
+    peer.do("close", name)
+
+
+def test_what_is_written_while_a_writer_is_made_is_heard(
+    peer: Peer, topic: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Its reader may know the new writer before we do; the one before is heard by nobody."""
+    name, make = f"r{topic}", DdsPublisher._made
+    writing: list[threading.Thread] = []
+
+    def slow(publisher: DdsPublisher) -> object:
+        made = make(publisher)
+        if publisher.qos.latched:
+            writing.append(threading.Thread(target=out.write, args=("map",)))
+            writing[0].start()
+            wait_until(lambda: peer.do("events", name)[0]["alive"] == 1)  # type: ignore[index]
+            writing[0].join(0.3)
+        return made
+
+    monkeypatch.setattr(DdsPublisher, "_made", slow)
+    with yarpy.Port("/out") as out:
+        out.connect(f"ros2+dds:/{topic}{TYPE}")
+        peer.do("reader", name, topic, "reliable", "transient_local", 10)
+        wait_until(lambda: peer.heard(name) == ["map"])
+        writing[0].join(HANG)
     peer.do("close", name)
 
 

@@ -190,6 +190,10 @@ class DdsPublisher(DdsEndpoint):
     _next: Any = None  # the writer that takes over
     _due = 0.0  # ... and when
 
+    def __init__(self, *arguments: Any) -> None:
+        super().__init__(*arguments)
+        self._changing = threading.Lock()  # such a writer is being made
+
     def _made(self) -> Any:
         from cyclonedds import pub
 
@@ -204,6 +208,9 @@ class DdsPublisher(DdsEndpoint):
         sample = self._class.__new__(self._class)
         body = item.body
         sample.body = body[0] if len(body) == 1 else b"".join(body)
+        if self._changing.locked():  # a reader may know a new writer before we do
+            with self._changing:
+                pass
         if self._next is not None and self._is_due():
             self._take_over()
         self._entity.write(sample, item.time or time.time_ns())
@@ -216,10 +223,11 @@ class DdsPublisher(DdsEndpoint):
         wanted = self._fitting()
         if not wanted.latched or self.qos.latched:
             return
-        self.qos = wanted
-        made = self._show(self._made())
-        self._owned = (made, *self._owned)
-        self._due, self._next = time.monotonic() + CHANGING, made
+        with self._changing:
+            self.qos = wanted
+            made = self._show(self._made())
+            self._owned = (made, *self._owned)
+            self._due, self._next = time.monotonic() + CHANGING, made
 
     def _is_due(self) -> bool:
         """Return whether all can have heard of the new writer. Where nobody hears the present one,
