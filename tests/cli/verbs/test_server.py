@@ -49,11 +49,12 @@ def test_from_nothing(lone, port):
         assert lone.run("where").returncode == 0
         with lone.start("read", "/server/r", "once") as reader:
             assert lone.run("wait", "/server/r").returncode == 0
+            process.wait_line(r'^ \* register "/server/r"$', stream="out")
+            # It says so behind its name: once it has read something, it may be gone before.
+            process.wait_line(r'^   \+ bot set "/server/r" offers ', stream="out")
             assert lone.run("write", "/server/w", "/server/r", input="hello\n").returncode == 0
             assert reader.wait() == 0
         assert reader.stdout == "hello\n"
-        process.wait_line(r'^ \* register "/server/r"$', stream="out")
-        process.wait_line(r'^   \+ bot set "/server/r" offers ', stream="out")
         process.wait_line(r'^ \* query "/server/r"$', stream="out")
         process.signal(signal.SIGTERM)
         assert process.wait() == 0
