@@ -208,7 +208,7 @@ def has_own_text(obj: object) -> bool:
 
 
 class Question(Protocol):
-    """What a payload is that is to be answered."""
+    """A payload that is to be answered."""
 
     def note_yarp4(self) -> None:
         """Its floats are those of YARP 4.0."""

@@ -213,7 +213,7 @@ def is_unsent(error: Exception) -> bool:
 
 
 class Answering(Protocol):
-    """What puts answers on the wire."""
+    """The part of a connection that answers."""
 
     yarp4: bool
     """They are spelled as YARP 4 does."""
