@@ -27,6 +27,7 @@ from yarpy.data.value import Vocab
 from yarpy.errors import LinkClosed
 from yarpy.link.ending import moment
 from yarpy.link.send.sender import BURST, LASTING, Sender
+from yarpy.link.send.sweeper import GATHER_SECONDS
 from yarpy.wire import framing
 from yarpy.wire.message import Packet
 
@@ -74,6 +75,30 @@ def test_burst_is_gathered_and_nothing_is_left_behind() -> None:
     assert transport.sends < count
     assert link.counter.messages == count
     assert link.wait_sent() and link.counter.bytes == count * size
+    link.close()
+
+
+@replaces_a_method
+def test_the_sweeper_leaves_the_processor_to_the_thread_that_sends(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    tries: list[bool] = []
+    sweep = Sender.sweep
+
+    def tried(sender: Sender, *limits: object) -> bool:
+        tries.append(sweep(sender, *limits))  # type: ignore[arg-type]
+        return tries[-1]
+
+    monkeypatch.setattr(Sender, "sweep", tried)
+    link, _ = open_link(FastTcp)
+    began = time.monotonic()
+    with link.sender.lock:
+        while not link.sender.gathered:
+            link.sender.transmit(Packet([1]), None)
+        wait_until(lambda: tries)
+        time.sleep(0.05)
+        assert not any(tries) and len(tries) <= (time.monotonic() - began) / GATHER_SECONDS + 1
+    wait_until(lambda: tries[-1])
     link.close()
 
 

@@ -373,10 +373,11 @@ class Sender:
     def _sweep_up(self) -> bool:
         """Sweep for the sweeper: whether the burst may still go on. The lock is held for moments:
         writers have limits of their own."""
-        while (self.halfway or self.gathered) and not self.broken:
-            if self.sweep(NOW):
-                break
-            self.driver.transport.wait_writable(AT_A_TIME)
+        while (self.halfway or self.gathered) and not self.broken and not self.sweep(NOW):
+            if self.halfway:
+                self.driver.transport.wait_writable(AT_A_TIME)
+            else:
+                time.sleep(GATHER_SECONDS)  # another thread is sending, and needs the processor
         return not self.broken and time.perf_counter() - self._left < 100 * GATHER_SECONDS
 
     # -- what comes back --------------------------------------------------------------------------

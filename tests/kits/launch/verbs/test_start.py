@@ -20,7 +20,7 @@ def test_idle_start_stop(cli) -> None:
     path.write_text("[programs]\na = 'sleep 600'\nb = 'sleep 600'\n")
     with cli.start("up", str(path), "--idle") as up:
         wait_until(lambda: cli.run("status").returncode == 0)
-        assert states(cli) == ["stopped", "stopped"]
+        wait_until(lambda: states(cli) == ["stopped", "stopped"])  # "waiting" at first
         assert cli.run("start", "a").returncode == 0
         up.wait_line(r"\* a running")
         assert cli.run("stop", "a").returncode == 0
