@@ -102,6 +102,17 @@ def test_the_sweeper_leaves_the_processor_to_the_thread_that_sends(
     link.close()
 
 
+def test_the_sweeper_sleeps_while_messages_leave_one_by_one() -> None:
+    link, _ = open_link(FastTcp)
+    sender = link.sender
+    sender._gathered_since = time.perf_counter() - 1.0
+    link.send(Packet([1]))
+    assert not sender._sweep_up()
+    sender._gathered_since = time.perf_counter() + 1.0
+    assert sender._sweep_up()
+    link.close()
+
+
 @replaces_a_method
 def test_who_says_that_more_follow_sends_them_together(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(Sender, "_watch", lambda sender: None)  # nobody else sends meanwhile

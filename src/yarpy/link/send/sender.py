@@ -32,8 +32,8 @@ if TYPE_CHECKING:
     from yarpy.route import Route
 
 # Gathering. A writer that comes back within RUSH times what a send takes on this machine, BURST
-# times in a row, is flooding.
-RUSH: Final = 3.0
+# times in a row, is flooding. Who waits for an answer from the same machine takes little longer.
+RUSH: Final = 2.0
 BURST: Final = 16
 LASTING: Final = 2 * GATHER_SECONDS
 GATHER: Final = 64  # messages
@@ -378,7 +378,7 @@ class Sender:
                 self.driver.transport.wait_writable(AT_A_TIME)
             else:
                 time.sleep(GATHER_SECONDS)  # another thread is sending, and needs the processor
-        return not self.broken and time.perf_counter() - self._left < 100 * GATHER_SECONDS
+        return not self.broken and time.perf_counter() - self._gathered_since < 100 * GATHER_SECONDS
 
     # -- what comes back --------------------------------------------------------------------------
 
