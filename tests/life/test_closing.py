@@ -102,9 +102,9 @@ def test_others_get_what_was_written_though_one_takes_nothing() -> None:
 def test_a_close_in_good_order_says_nothing(caplog: pytest.LogCaptureFixture) -> None:
     names = yarpy.LocalNames()
     with yarpy.BufferedPort("/in", names=names, strict=True) as in_:
-        carriers = ["tcp", "fast_tcp", "unix_stream", "memory", "local"]
+        carriers = ["tcp", "fast_tcp", "text", "text_ack", "unix_stream", "memory", "local"]
         if NO_UNIX_SOCKETS:  # nor what goes over them
-            carriers = ["tcp", "fast_tcp", "local"]
+            carriers = ["tcp", "fast_tcp", "text", "text_ack", "local"]
         for carrier in carriers:
             with yarpy.Port("/out", names=names) as out:
                 out.connect("/in", carrier)
@@ -113,4 +113,19 @@ def test_a_close_in_good_order_says_nothing(caplog: pytest.LogCaptureFixture) ->
             assert books(out) == {"messages": 100, "drops": 0, "replaced": 0, "unconfirmed": 0}
         for _ in range(100 * len(carriers)):
             assert in_.read(timeout=HANG) is not None
+    assert not LINE.search(caplog.text)
+
+
+@pytest.mark.parametrize("carrier", ["tcp", "fast_tcp", "text", "text_ack", "udp", "mcast"])
+def test_a_reader_that_has_read_all_and_closes_is_no_cause_for_warning(
+    carrier: str, caplog: pytest.LogCaptureFixture
+) -> None:
+    names = yarpy.LocalNames()
+    with yarpy.Port("/out", names=names) as out:
+        with yarpy.BufferedPort("/in", names=names, strict=True) as in_:
+            out.connect("/in", carrier)
+            assert in_.wait_for_inputs(timeout=HANG)
+            out.write(["one"])
+            assert in_.read(timeout=HANG) is not None
+        wait_until(lambda: not out.outputs)
     assert not LINE.search(caplog.text)

@@ -14,7 +14,7 @@ from itertools import accumulate
 from typing import TYPE_CHECKING, Any, Final
 
 from yarpy import scope
-from yarpy.errors import LocalProtocolError, Timeout, YarpError
+from yarpy.errors import LinkClosed, LocalProtocolError, Timeout, YarpError
 from yarpy.link.ending import NEVER, Ending, moment
 from yarpy.link.receive.incoming import Incoming
 from yarpy.link.send.backlog import Backlog
@@ -372,7 +372,8 @@ class Outbound:
             if self.carrier.spelling == "text":
                 # The welcome, and all else that they say: closing with unread input resets the
                 # connection and loses our last output.
-                driver.run(driver.stream.skip(sys.maxsize), by)
+                with suppress(LinkClosed):  # their end, which says that they have read ours
+                    driver.run(driver.stream.skip(sys.maxsize), by)
             aloud = driver.bytes_out > before and not self.carrier.reaches.foreign
             return not aloud or self.carrier.delivery.lossy or self._hangs_up(by)
         sender.window.open += 1
