@@ -213,6 +213,8 @@ def _run(command: list[str], folder: Path, text: str = "", limit: float = LIMIT)
                 return process.returncode, _text(said)
             except subprocess.TimeoutExpired as error:
                 given = None  # it has that
+                if process.poll() is not None:  # what it has left behind holds its output
+                    return process.returncode, _text(error.output or b"")
                 if _is_left(process.pid):
                     why = "wine's own server has ended, as that of wine 8 does now and then"
                 elif time.monotonic() >= until:

@@ -64,6 +64,16 @@ def test_little_is_under_way_on_one_computer(size: int) -> None:
     listener.release()
 
 
+def test_packets_that_need_no_mark_are_refused_nowhere() -> None:
+    listener = TcpListener()
+    near = dial("127.0.0.1", listener.port)
+    near.set_dscp(0)
+    assert near.tos() == 0
+    near.close()
+    listener.close()
+    listener.release()
+
+
 @pytest.mark.skipif(bool(NO_MARKS), reason=NO_MARKS)
 def test_dscp_is_set_on_the_socket() -> None:
     listener = TcpListener()

@@ -21,6 +21,7 @@ if sys.platform == "win32":
     _DENIED: Final = 5  # ERROR_ACCESS_DENIED
     _RUNS: Final = 259  # STILL_ACTIVE
     _PATH: Final = 1 << 15  # letters of the longest one
+    _PROCESSES: Final = 2  # TH32CS_SNAPPROCESS
 
     def lives(pid: int) -> bool:
         """Return whether there is a process with that number. `os.kill(pid, 0)` would be Ctrl-C."""
@@ -54,6 +55,42 @@ if sys.platform == "win32":
             return text.value if told else ""
         finally:
             kernel.CloseHandle(handle)
+
+    def ancestors() -> list[str]:
+        """Return the names of the files of the programs that have led to this one: of who has
+        started it, of who has started that, and on until one that has ended."""
+        import ctypes
+        from ctypes import wintypes
+
+        class Entry(ctypes.Structure):
+            _fields_ = (
+                ("size", wintypes.DWORD),
+                ("usage", wintypes.DWORD),
+                ("pid", wintypes.DWORD),
+                ("heap", ctypes.c_size_t),
+                ("module", wintypes.DWORD),
+                ("threads", wintypes.DWORD),
+                ("parent", wintypes.DWORD),
+                ("priority", wintypes.LONG),
+                ("flags", wintypes.DWORD),
+                ("file", wintypes.WCHAR * 260),
+            )
+
+        kernel = ctypes.WinDLL("kernel32")
+        kernel.CreateToolhelp32Snapshot.restype = ctypes.c_void_p
+        snapshot = ctypes.c_void_p(kernel.CreateToolhelp32Snapshot(_PROCESSES, 0))
+        entry, all_of_them = Entry(ctypes.sizeof(Entry)), dict[int, tuple[int, str]]()
+        more = kernel.Process32FirstW(snapshot, ctypes.byref(entry))
+        while more:
+            all_of_them[entry.pid] = entry.parent, entry.file
+            more = kernel.Process32NextW(snapshot, ctypes.byref(entry))
+        kernel.CloseHandle(snapshot)
+        names, pid = list[str](), os.getpid()
+        while pid in all_of_them:
+            pid, _ = all_of_them.pop(pid)
+            if pid in all_of_them:
+                names.append(all_of_them[pid][1])
+        return names
 
     def signal_group(pid: int, number: int) -> bool:
         """Send a signal to all whom a process leads; return whether there is one. 0 asks only."""

@@ -300,6 +300,8 @@ class SocketTransport(Answerable):
 
     def set_dscp(self, tos: int) -> None:
         if sys.platform == "win32":  # which takes the option, and does nothing
+            if tos == self.tos():
+                return
             raise LocalProtocolError(
                 "Windows marks packets by its policies alone: as an administrator, New-NetQosPolicy"
                 f" yarpy -AppPathNameMatchCondition python.exe -DSCPAction {tos >> 2}"

@@ -1,6 +1,7 @@
 """`yarpy sched`: the scheduling of threads."""
 
 import pytest
+from support.system import NO_SCHEDULING
 from support.wait import wait_until
 
 import yarpy
@@ -16,6 +17,7 @@ def ports(names):
         yield "/sched/out", "/sched/in"
 
 
+@pytest.mark.skipif(bool(NO_SCHEDULING), reason=NO_SCHEDULING)
 def test_get(here, ports):
     assert here("sched", "get", *ports).out == (
         "(src (sched ((policy -1) (priority -1)))) (des (sched ((policy 0) (priority 0))))\n"

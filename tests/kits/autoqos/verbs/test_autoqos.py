@@ -6,6 +6,7 @@ import threading
 import time
 
 import pytest
+from support.system import NO_MARKS
 from support.wait import HANG, wait_until
 
 import yarpy
@@ -17,9 +18,20 @@ deadline = 0.05
 """
 
 
+# What is set until it helps: a deadline, packets at both ends; where the system marks none for a
+# program, threads too.
+SETTINGS = 5 if NO_MARKS else 3
+
+
+def helped(port):
+    """Whether the first connection of a port has what helps."""
+    now = port.outputs[0].qos
+    return now.policy in ("SCHED_FIFO", "SCHED_RR") if NO_MARKS else now.packets == "AF42"
+
+
 @pytest.fixture
 def late(names):
-    """A connection whose messages are late until its packets matter; what writes into it."""
+    """A connection whose messages are late until it has what helps; what writes into it."""
     going = threading.Event()
     with (
         yarpy.Port("/autoqos/out", names=names) as out,
@@ -30,7 +42,7 @@ def late(names):
 
         def write():
             while not going.wait(0.005):
-                old = out.outputs[0].qos.packets == "CS0"
+                old = not helped(out)
                 # Stamps of the future are in time however busy this machine is.
                 out.write([1], yarpy.Stamp(1, time.time() + (-1.0 if old else 60.0)))
 
@@ -48,14 +60,14 @@ def test_each_step_is_a_line_and_an_interrupt_undoes_them(cli, late, tmp_path):
         agent.wait_line(r"\d\d:\d\d:\d\d deadlines of 50 ms are counted on /autoqos/out")
         agent.wait_line(r"late on /autoqos/out -> /autoqos/in: its packets become HIGH")
         agent.wait_line("that helped: ")
-        assert late.outputs[0].qos.packets == "AF42"
+        assert helped(late)
         with cli.start("autoqos", str(file)) as second:
             assert second.wait() == 1
             assert "another autoqos is running" in second.stderr
         agent.signal(signal.SIGINT)
         agent.wait()
-        assert "as it was found: 3 settings undone" in agent.stdout
-    assert late.outputs[0].qos.packets == "CS0"
+        assert f"as it was found: {SETTINGS} settings undone" in agent.stdout
+    assert not helped(late)
 
 
 def test_the_next_start_undoes_what_a_killed_one_left(cli, late, tmp_path):
@@ -64,9 +76,9 @@ def test_the_next_start_undoes_what_a_killed_one_left(cli, late, tmp_path):
     with cli.start("autoqos", "--json", str(file)) as agent:
         agent.wait_line("that helped")
         agent.kill()
-    assert late.outputs[0].qos.packets == "AF42"
+    assert helped(late)
     with cli.start("autoqos", "--json", str(file)) as agent:
-        line = agent.wait_line("an agent that was killed left 3 settings undone").string
+        line = agent.wait_line(f"that was killed left {SETTINGS} settings undone").string
         assert json.loads(line)["failed"] == []
         wait_until(lambda: "that helped" in agent.stdout)
 
@@ -76,7 +88,7 @@ def test_a_dry_run_says_what_it_would_do(cli, late, tmp_path):
     file.write_text(RULES)
     with cli.start("autoqos", "--dry-run", str(file)) as agent:
         agent.wait_line("would: deadlines of 50 ms are counted on /autoqos/out")
-    assert late.outputs[0].qos.packets == "CS0"
+    assert not helped(late)
 
 
 def test_mistakes_in_rules(here, tmp_path):

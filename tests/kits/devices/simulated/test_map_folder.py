@@ -87,6 +87,8 @@ def test_no_file_where_a_link_leads(folder: MapFolder, tmp_path: Path) -> None:
         (tmp_path / "maps" / "out").symlink_to(tmp_path / "outside", target_is_directory=True)
     except OSError:
         pytest.skip("this user may not make symbolic links, which Windows asks a right for")
+    if not (tmp_path / "maps" / "out").is_dir():
+        pytest.skip("wine 8 says that it has made a symbolic link, and has made none")
     with pytest.raises(Refused, match="not in the folder"):
         folder.keep_names(MapNames(), "out/locations.ini")
 
