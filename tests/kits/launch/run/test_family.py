@@ -1,5 +1,6 @@
 """A program and all that it has started."""
 
+import os
 import signal
 import subprocess
 import sys
@@ -30,7 +31,7 @@ if sys.argv[1] == "stay":
 
 @pytest.mark.parametrize("first", ["stay", "go"])
 def test_who_left_the_session_is_found_and_ended(first: str) -> None:
-    mark = f"test-{first}"
+    mark = f"test-{first}-{os.getpid()}"
     with subprocess.Popen(
         [sys.executable, "-c", LEAVES, first],
         env={family.MARK: mark},

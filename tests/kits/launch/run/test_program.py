@@ -61,22 +61,27 @@ def test_one_that_is_dead_at_once_and_one_without_a_line_end(book: Book) -> None
 
 
 def test_the_next_server_finds_it_again(book: Book, tmp_path: Path) -> None:
-    gate = tmp_path / "gate"
+    gate, said, last = (tmp_path / name for name in ("gate", "said", "last"))
     code = f"""
 import os, time
+def passes(gate):
+    while not os.path.exists(gate):
+        time.sleep(0.01)
 print("before", flush=True)
-while not os.path.exists({str(gate)!r}):
-    time.sleep(0.01)
-print("after")
+passes({str(gate)!r})
+print("after", flush=True)
+open({str(said)!r}, "w").close()
+passes({str(last)!r})
 """
     first = begin(book, code)
     wait_until(first.look)
     first.leave()
     gate.touch()
+    wait_until(said.exists)  # while nobody hears it
     [entry] = book.entries()
     again = program.found_again(book, entry)
-    if again is None:  # it has ended already: then what it said is lost with it
-        pytest.fail("a program of this test ended before it was looked for")
+    last.touch()
+    assert again is not None
     assert again.entry.pid == first.entry.pid
     assert first._child is not None
     first._child.returncode = None
