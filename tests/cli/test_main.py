@@ -113,6 +113,14 @@ def test_wrong_use_is_told_with_the_right_one(here):
     )
 
 
+@pytest.mark.parametrize("verb", ["idl", "qos", "sched"])
+def test_a_verb_of_verbs_lists_them_where_none_is_said(here, verb):
+    code, out, err = here(verb)
+    assert (code, out) == (1, "")
+    assert err.startswith(f"Usage: yarpy {verb} ")
+    assert "\nCommands:\n" in err.replace("\r", "")
+
+
 def test_an_error_is_one_line(lone):
     said = lone.run("ping", "/nobody")
     assert (said.returncode, said.stdout) == (1, "")

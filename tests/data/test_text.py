@@ -10,6 +10,7 @@ from support.table import for_each
 from support.vectors import rows
 
 from yarpy.data.bottle import Bottle
+from yarpy.data.codec import encode_text
 from yarpy.data.text import Balance, parse_text, plain_text, print_text, tokens
 from yarpy.data.value import Float32, Int8, Int64, Vocab
 from yarpy.errors import DecodeError
@@ -237,6 +238,15 @@ def test_deep_and_long_text_takes_no_minutes():
     with pytest.raises(DecodeError, match="length"):
         parse_text("(" * 100 + words * 80 + ")" * 100)
     assert time.process_time() - begin < 20
+
+
+@pytest.mark.parametrize("number", [2**63, -(2**63) - 1, 10**30])
+def test_what_reads_back_as_another_number_is_not_printed(number):
+    for value in ([number], [[1, number]], {"a": number}):
+        with pytest.raises(OverflowError, match="64 bits"):
+            encode_text(value)
+    for edge in (2**63 - 1, -(2**63)):
+        assert parse_text(print_text([edge])) == [edge]
 
 
 def test_unknown_objects_cannot_be_printed():

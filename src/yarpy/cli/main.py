@@ -134,6 +134,9 @@ def run(arguments: Sequence[str]) -> int:
         return 128 + signal.number
     except click.Abort:  # click's word for ^C and for the end of input at one of its prompts
         return 130
+    except click.exceptions.NoArgsIsHelpError as error:  # of a verb with verbs of its own
+        click.echo(error.format_message(), err=True)
+        return 1
     except click.UsageError as error:
         complain(_plain(error.format_message()))
         if error.ctx is not None and error.exit_code != NO_SUCH_VERB:

@@ -361,6 +361,8 @@ def _print_str(value: str) -> str:
 
 
 def _print_int(value: int) -> str:
+    if not -_INT64_MAX - 1 <= value <= _INT64_MAX:  # whoever reads it would take the nearest
+        raise OverflowError(f"{value} does not fit in 64 bits; send it as a float or a string")
     return int.__repr__(value)
 
 

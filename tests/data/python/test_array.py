@@ -181,6 +181,18 @@ def test_what_holds_no_numbers(values: NDArray[Any]) -> None:
         array.blocks(values)
 
 
+@pytest.mark.parametrize("kind", [int, "u1", ">i4"])
+def test_what_is_masked_is_not_sent(kind: str) -> None:
+    """What numpy puts in place of it would be taken for numbers."""
+    masked = np.ma.masked_array(np.arange(6, dtype=kind).reshape(2, 3)[0], mask=[0, 1, 0])
+    with pytest.raises(TypeError, match=r"masked array cannot be sent.*filled"):
+        array.blocks(masked)
+    for within in ([masked], {"a": masked}):
+        with pytest.raises(TypeError, match="masked array"):
+            codec.encode(within)
+    assert array.blocks(masked.filled(7)) == array.blocks(np.array([0, 7, 2], kind))
+
+
 def test_too_many_dimensions(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(array, "ARRAY_DIMENSIONS", 4)
     with pytest.raises(ValueError, match="5 dimensions; 4 are sent"):

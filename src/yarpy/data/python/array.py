@@ -112,7 +112,8 @@ def is_blob(array: NDArray[Any]) -> bool:
 
 
 def little(array: NDArray[Any]) -> NDArray[Any]:
-    """The array in little-endian order. TypeError if it holds no numbers."""
+    """The array in little-endian order. TypeError if it holds no numbers, or hides some."""
+    _refuse_masked(array)
     if array.dtype.str in NUMBERS:
         return array
     swapped = array.dtype.newbyteorder("<")
@@ -167,7 +168,18 @@ def array_of(value: Any) -> NDArray[Any] | None:
     if not shared and hasattr(value, "__dlpack__"):
         found: NDArray[Any] = np.from_dlpack(value)
         return found
+    _refuse_masked(value)
     return np.asarray(value)
+
+
+def _refuse_masked(array: Any) -> None:
+    """TypeError for an array with a mask. What numpy gives for places that are masked is a number
+    of its own, or the one that was there, as the array happens to lie in memory."""
+    if hasattr(array, "filled"):
+        raise TypeError(
+            "a masked array cannot be sent, since a message has no place for its mask; "
+            "array.filled(number) can, and array.data with what is masked"
+        )
 
 
 def _array_of_tensor(tensor: Any) -> NDArray[Any]:

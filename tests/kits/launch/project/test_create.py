@@ -49,7 +49,7 @@ def test_programs_are_called_as_they_are(
     ("name", "why"),
     [
         *((name, "write small letters") for name in ("", "Ball", "../x", "a b", "1a", "a" * 51)),
-        *((name, "take another name") for name in ("json", "yarpy", "tests")),
+        *((name, "take another name") for name in ("json", "yarpy", "tests", "class")),
     ],
 )
 def test_names_that_are_none(tmp_path: Path, name: str, why: str) -> None:

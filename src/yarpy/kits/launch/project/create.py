@@ -11,6 +11,7 @@ import re
 import shutil
 import sys
 from importlib.resources import files
+from keyword import iskeyword
 from pathlib import Path
 from string import Template
 from typing import Final
@@ -38,7 +39,7 @@ def create(name: str, folder: Path) -> list[Path]:
     if not _NAME.fullmatch(name) or len(name) > _LONGEST:
         text = f'"{name}" cannot be the name of a project: write small letters, as in ball_tracker'
         raise LocalProtocolError(text)
-    if package in _TAKEN or package in sys.stdlib_module_names:
+    if package in _TAKEN or package in sys.stdlib_module_names or iskeyword(package):
         raise LocalProtocolError(f'Python has something called "{package}": take another name')
     place = folder / name
     if place.exists():
