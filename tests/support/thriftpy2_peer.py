@@ -2,6 +2,8 @@
 
 python -P thriftpy2_peer.py client PROTOCOL TRANSPORT PORT     what it hears, as JSON
 python -P thriftpy2_peer.py server PROTOCOL TRANSPORT PORT     serves until it is killed
+
+TRANSPORT: buffered, framed or http.
 """
 
 import json
@@ -23,12 +25,10 @@ def everything(m: Any) -> Any:
     )  # fmt: skip
 
 
-def client(m: Any, port: int, way: dict[str, Any]) -> dict[str, Any]:
+def client(m: Any, made: Any) -> dict[str, Any]:
     """Call a server; what it answers."""
-    from thriftpy2.rpc import make_client
     from thriftpy2.thrift import TApplicationException
 
-    made = make_client(m.Test, "127.0.0.1", port, timeout=30_000, **way)
     heard: dict[str, Any] = {
         "ping": made.ping(),
         "add": [made.add(1, 2), made.add(1)],
@@ -100,9 +100,9 @@ class Server:
 def main(role: str, protocol: str, transport: str, port: int) -> None:
     """Be a client or a server."""
     import thriftpy2
+    from thriftpy2 import http, rpc
     from thriftpy2 import protocol as protocols
     from thriftpy2 import transport as transports
-    from thriftpy2.rpc import make_server
 
     m = thriftpy2.load(str(FILE), module_name="apache_thrift")
     way = {
@@ -113,12 +113,17 @@ def main(role: str, protocol: str, transport: str, port: int) -> None:
         "trans_factory": {
             "buffered": transports.TBufferedTransportFactory,
             "framed": transports.TFramedTransportFactory,
+            "http": transports.TBufferedTransportFactory,
         }[transport](),
     }
+    over: Any = http if transport == "http" else rpc
     if role == "client":
-        print(json.dumps(client(m, port, way)))
+        made = over.make_client(m.Test, "127.0.0.1", port, timeout=30_000, **way)
+        print(json.dumps(client(m, made)))
+    elif transport == "http":
+        http.make_server(m.Test, Server(m), "127.0.0.1", port, **way).serve()
     else:
-        make_server(m.Test, Server(m), "127.0.0.1", port, **way).serve()
+        rpc.make_server(m.Test, Server(m), "127.0.0.1", port, **way).serve()
 
 
 if __name__ == "__main__":

@@ -203,6 +203,11 @@ def client_class(service: type[Any], waits: bool = False) -> Callable[[Any, Any]
     return found
 
 
+def check_target(target: str, carrier: str) -> None:
+    """Raise AddressError for a target that `client_of` refuses, before it is dialled."""
+    apache.spelling(target, carrier)
+
+
 def client_of(
     service: type[Any],
     port: Any,

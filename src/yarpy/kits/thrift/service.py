@@ -272,8 +272,9 @@ class Service:
         waited for as long, too: LinkClosed. `options` are those of `yarpy.RpcClient`.
         `with`, or `close()`, ends the connection.
         """
-        from yarpy.kits.thrift.client import client_of
+        from yarpy.kits.thrift.client import check_target, client_of
 
+        check_target(target, carrier)
         port = registry.clients.load("rpc")(target, carrier=carrier, timeout=timeout, **options)
         return client_of(cls, port, timeout, target, carrier)  # type: ignore[no-any-return]
 
@@ -291,8 +292,9 @@ class Service:
         cls, target: str, *, timeout: float | None = None, carrier: str = "", **options: Any
     ) -> Any:
         """The same for event loops: `async with` it, and await its methods."""
-        from yarpy.kits.thrift.client import client_of
+        from yarpy.kits.thrift.client import check_target, client_of
 
+        check_target(target, carrier)
         port = registry.clients.load("aio")(target, carrier=carrier, timeout=timeout, **options)
         return client_of(cls, port, timeout, target, carrier, waits=True)
 

@@ -21,12 +21,11 @@ from yarpy.errors import (
     YarpError,
 )
 from yarpy.kits.thrift.apache.carrier import Thrift
-from yarpy.kits.thrift.apache.message import Asked, Call
+from yarpy.kits.thrift.apache.message import Call
 from yarpy.kits.thrift.apache.protocol import Fault
 from yarpy.link.begin.handshake import recognise
 from yarpy.route import Route, parse_carrier
 from yarpy.wire.effects import May
-from yarpy.wire.message import Packet
 from yarpy.wire.stream import ByteStream
 
 WAYS = [(spelling, framed) for spelling in SPELLINGS for framed in (False, True)]
@@ -131,12 +130,7 @@ def test_answers_are_no_calls() -> None:
         next(carrier.decode(stream))
 
 
-def test_only_calls_leave() -> None:
-    carrier, stream = Thrift(Route("/a", "/b", "thrift", 0)), ByteStream()
-    assert not carrier.prepare(Packet([1]))
-    for value in ([1], Asked("compact", 1, "add", b"\0")):
-        with pytest.raises(TypeError, match="only the clients of a service speak"):
-            carrier.encode(stream, Packet(value))
+def test_words_that_it_does_not_know() -> None:
     with pytest.raises(LocalProtocolError, match='thrift knows no "\\+frame"'):
         Thrift.of(parse_carrier("thrift+frame"))
 

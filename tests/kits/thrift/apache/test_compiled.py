@@ -20,8 +20,9 @@ from support.wait import HANG, wait_until
 import yarpy
 from yarpy.kits.thrift.library import load
 
+SAID = ("compact", "framed", "http")  # of a carrier
 PROTOCOLS = ("binary", "compact")
-TRANSPORTS = ("buffered", "framed")
+TRANSPORTS = ("buffered", "framed", "http")
 
 
 @cache
@@ -53,7 +54,7 @@ def service() -> Any:
     return type("Server", (m.Peer,), methods)()
 
 
-@pytest.mark.parametrize("transport", [*TRANSPORTS, "http"])
+@pytest.mark.parametrize("transport", TRANSPORTS)
 @pytest.mark.parametrize("protocol", PROTOCOLS)
 def test_a_compiled_client(peer: tuple[str, ...], protocol: str, transport: str) -> None:
     with yarpy.RpcServer("/thrift", service(), names=yarpy.LocalNames()) as server:
@@ -80,7 +81,7 @@ def test_a_compiled_client(peer: tuple[str, ...], protocol: str, transport: str)
 def test_a_compiled_server(peer: tuple[str, ...], protocol: str, transport: str) -> None:
     m, port = compiled(), free_port()
     runs = subprocess.Popen([*peer, "server", protocol, transport, str(port)])
-    way = "".join(f"+{word}" for word in (protocol, transport) if word in ("compact", "framed"))
+    way = "".join(f"+{word}" for word in (protocol, transport) if word in SAID)
     try:
         wait_until(partial(answers, port), what="the server listens")
         with m.Peer.connect(f"thrift{way}://127.0.0.1:{port}", timeout=HANG) as made:
@@ -109,6 +110,29 @@ def test_a_compiled_server(peer: tuple[str, ...], protocol: str, transport: str)
         runs.wait()
 
 
-def test_a_server_over_http_is_refused() -> None:
-    with pytest.raises(yarpy.LocalProtocolError, match=r'thrift knows no "\+http"'):
-        compiled().Peer.connect("thrift+http://127.0.0.1:9", timeout=HANG)
+def test_a_server_over_http_that_is_gone_and_comes_back(peer: tuple[str, ...]) -> None:
+    port = free_port()
+    command = [*peer, "server", "compact", "http", str(port)]
+    target = f"thrift+http+compact+path.peer://127.0.0.1:{port}"
+    runs = subprocess.Popen(command, stderr=subprocess.DEVNULL)
+    try:
+        wait_until(partial(answers, port), what="the server listens")
+        with compiled().Peer.connect(target, timeout=HANG) as made:
+            made.fire("x")
+            made.fire("y")
+            assert made.fired() == ["x", "y"]
+            runs.kill()
+            runs.wait()
+            with pytest.raises(yarpy.LinkClosed, match="fired"):
+                made.fired()
+            runs = subprocess.Popen(command, stderr=subprocess.DEVNULL)
+            wait_until(partial(answers, port), what="the server listens again")
+            assert made.fired() == []
+        with (
+            compiled().Peer.connect(target.replace("+compact", ""), timeout=HANG) as made,
+            pytest.raises(yarpy.LinkClosed, match="went away during the call"),
+        ):
+            made.ping()  # in the other protocol, of which it makes an exception
+    finally:
+        runs.kill()
+        runs.wait()

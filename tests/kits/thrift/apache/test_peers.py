@@ -17,7 +17,8 @@ from support.wait import HANG, wait_until
 import yarpy
 
 SUPPORT = Path(thrift_venv.__file__).parent
-WAYS = [(p, t) for p in ("binary", "compact") for t in ("buffered", "framed")]
+SAID = ("compact", "framed", "http")  # of a carrier
+WAYS = [(p, t) for p in ("binary", "compact") for t in ("buffered", "framed", "http")]
 
 
 @pytest.fixture
@@ -70,8 +71,7 @@ def target(request: pytest.FixtureRequest, python: str) -> Iterator[str]:
     peer = subprocess.Popen([*command, protocol, transport, str(port)])
     try:
         wait_until(lambda: answers(port), what="the server listens")
-        added = {"compact": "+compact", "framed": "+framed"}
-        way = added.get(protocol, "") + added.get(transport, "")
+        way = "".join(f"+{word}" for word in (protocol, transport) if word in SAID)
         yield f"thrift{way}://127.0.0.1:{port}"
     finally:
         peer.kill()

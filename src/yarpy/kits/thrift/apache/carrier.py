@@ -3,6 +3,7 @@
     thrift            TBinaryProtocol over TBufferedTransport
     thrift+framed     the same over TFramedTransport
     thrift+compact    TCompactProtocol, over either
+    thrift+http       either protocol in the bodies of POSTs (`post.py`)
 
 Rules: what comes says by its first bytes what it is: a length before 80 01 or 82 in a frame. Calls
 of one connection are answered in their order, each by its number. A port that has no service of
@@ -14,23 +15,20 @@ from __future__ import annotations
 from struct import Struct as Packing
 from typing import Final
 
-from yarpy.carriers.base import Carrier, Delivery, Limits, refuse_unknown
+from yarpy.carriers.base import Carrier, refuse_unknown
 from yarpy.data.value import Buffer
-from yarpy.errors import AccessRefused, DecodeError, RemoteProtocolError
-from yarpy.facts import MAGIC_SIZE, SOCKET
-from yarpy.kits.thrift.apache.decode import READERS
+from yarpy.errors import AccessRefused, LocalProtocolError, RemoteProtocolError
+from yarpy.facts import MAGIC_SIZE
+from yarpy.kits.thrift.apache.asking import Asking
 from yarpy.kits.thrift.apache.message import (
     NO_SERVICE,
     NOTHING,
     Answer,
-    Asked,
-    Returned,
     arrived,
     faulty,
     refusal_of,
     spelling_of,
     whole,
-    written,
 )
 from yarpy.kits.thrift.apache.protocol import (
     CALL,
@@ -42,39 +40,40 @@ from yarpy.kits.thrift.apache.protocol import (
 from yarpy.kits.thrift.apache.scan import Scan
 from yarpy.route import CarrierSpec, Route
 from yarpy.wire.effects import May
-from yarpy.wire.message import Message, Packet
+from yarpy.wire.message import Message
 from yarpy.wire.steps import Steps
 from yarpy.wire.stream import ByteStream
 
 NOBODY: Final = "thrift"  # what a client is called
-_WORDS: Final = ("framed", "compact")
+_WORDS: Final = ("framed", "compact", "http", "path.PATH")
 _LENGTH: Final = Packing(">i")
 
 
-class Thrift(Carrier):
-    """A connection of a client."""
+class Thrift(Asking):
+    """A connection of a client, or to a server over a socket."""
 
-    name = "thrift"
     magic = b"\x80\x01\0\1"  # among others
-    acks = True
-    reaches = SOCKET
-    delivery = Delivery(coalesces=False)
-    limits = Limits(ack_timeout=60.0)
 
     def __init__(self, route: Route) -> None:
         super().__init__(route)
         self.framed = "framed" in route.spec.tokens
-        self.spelled = "compact" if "compact" in route.spec.tokens else "binary"
         self._admitted = False
         self._owed: Head | None = None  # the call that waits for its answer
         self._taken = self._acked = 0  # calls handed to the port, and those it is done with
-        self._number = 0  # of our last call
-        self._awaits = False  # our last call has an answer that was not read
 
     @classmethod
     def of(cls, spec: CarrierSpec) -> type[Carrier]:
         refuse_unknown(spec, _WORDS)
-        return cls
+        if "http" not in spec.tokens:
+            if spec.value("path") is not None:
+                raise LocalProtocolError("a path is said of thrift+http, where calls are posted")
+            return cls
+        if "framed" in spec.tokens:
+            raise LocalProtocolError("over HTTP a message has no frame: leave out +framed")
+        from yarpy.kits.thrift.apache.post import Post, path_of
+
+        path_of(spec)
+        return Post
 
     @classmethod
     def recognises(cls, first: bytes) -> int:
@@ -129,7 +128,7 @@ class Thrift(Carrier):
         if head is not None:
             self._send(stream, whole(self.spelled, head, answer))
 
-    # -- both -------------------------------------------------------------------------------------
+    # -- both roles --------------------------------------------------------------------------------
 
     def _send(self, stream: ByteStream, data: bytes) -> None:
         stream.write(_LENGTH.pack(len(data)) + data if self.framed else data)
@@ -158,36 +157,9 @@ class Thrift(Carrier):
         return
         yield
 
-    def prepare(self, packet: Packet) -> bool:
-        return isinstance(packet.value, Asked)
-
-    def encode(self, stream: ByteStream, packet: Packet) -> None:
-        asked = packet.value
-        if not isinstance(asked, Asked) or asked.thrift != self.spelled:
-            raise TypeError(
-                "over thrift only the clients of a service speak: Camera.connect(...) of "
-                "yarpy.idl.load(...)"
-            )
-        self._number = self._number % 0x7FFFFFFF + 1
-        self._awaits = asked.kind == CALL
-        head = Head(asked.kind, asked.name, self._number)
-        self._send(stream, written(self.spelled, head, asked.body))
-
-    def encode_quit(self, stream: ByteStream) -> None:
-        """Only closing ends the connection."""
-
     def expect_reply(self, stream: ByteStream) -> Steps[Message | None]:
         if not self._awaits:
             return None
         data = yield from self._read(stream)
         self._awaits = False
-        try:
-            reader = READERS[self.spelled](data)
-            head = reader.head()
-        except DecodeError as error:
-            raise RemoteProtocolError(f"no answer of {self.route.spec}: {error}") from error
-        if head.number != self._number:
-            raise RemoteProtocolError(
-                f"an answer to the call {head.number}, where {self._number} was asked last"
-            )
-        return Returned(self.spelled, head, data, reader.at)
+        return self._returned(data)

@@ -9,10 +9,17 @@ from __future__ import annotations
 
 from typing import Any
 
-from yarpy.errors import DecodeError, LinkClosed, LocalProtocolError, Timeout, YarpError
+from yarpy.errors import (
+    AddressError,
+    DecodeError,
+    LinkClosed,
+    LocalProtocolError,
+    Timeout,
+    YarpError,
+)
 from yarpy.kits.thrift.apache import encode
 from yarpy.kits.thrift.apache.decode import READERS, fields
-from yarpy.kits.thrift.apache.message import Asked, Returned, fault_of
+from yarpy.kits.thrift.apache.message import Asked, HungUp, Returned, fault_of
 from yarpy.kits.thrift.apache.protocol import (
     CALL,
     EXCEPTION,
@@ -28,13 +35,17 @@ CARRIER = "thrift"
 
 def spelling(target: str, carrier: str) -> str:
     """Return the protocol that a connection to `target` will have: `binary`, `compact`; "" where it
-    is of YARP."""
+    is of YARP. AddressError for a server over HTTP whose path stands behind its number, where ports
+    have their names."""
     named = carrier or (target.partition("://")[0] if "://" in target else "")
     if not named.lstrip("/").startswith(CARRIER):
         return ""
     spec = parse_carrier(named.lstrip("/"))
     if spec.base != CARRIER:
         return ""
+    place, _, path = target.rpartition("://")[2].partition("/")
+    if "http" in spec.tokens and "://" in target and path:
+        raise AddressError(f'"{target}": say the path as {named}+path.{path}://{place}')
     return "compact" if "compact" in spec.tokens else "binary"
 
 
@@ -96,7 +107,10 @@ class Sync(_Client):
         asked = question(self._thrift, method, values)
         try:
             if method.oneway:
-                return self._port.tell(asked)
+                try:
+                    return self._port.tell(asked)
+                except HungUp:  # a question is asked again by itself
+                    return self._port.tell(asked)
             return result(method, self._port.ask(asked, self.timeout))
         except YarpError as error:
             said = self._told(method, error)
@@ -120,7 +134,10 @@ class Async(_Client):
         asked = question(self._thrift, method, values)
         try:
             if method.oneway:
-                return await self._port.tell(asked)
+                try:
+                    return await self._port.tell(asked)
+                except HungUp:  # a question is asked again by itself
+                    return await self._port.tell(asked)
             return result(method, await self._port.ask(asked, self.timeout))
         except YarpError as error:
             said = self._told(method, error)
