@@ -38,9 +38,11 @@ def cpp_client(program: Path, our_names: CppYarp, capt: ModuleType) -> Iterator[
 
 
 @pytest.mark.timeout(500)
-def test_cpp_gives_back_what_it_is_sent(cpp_client: Any, capt: ModuleType) -> None:
+def test_cpp_gives_back_what_it_is_sent(cpp: CppYarp, cpp_client: Any, capt: ModuleType) -> None:
     point, color = capt.Point, capt.Color
-    nest = capt.Nest(point(1, 2), [point(3, 4)], {"a": point(7, 8)}, [[1, 2], []], {"v": [1.5]})
+    # Beside fractions 4.0.0 does not read lists of lists, which are spelled as 4.0.1 will.
+    lists = [[1, 2], []] if cpp.version < (4, 0) else []
+    nest = capt.Nest(point(1, 2), [point(3, 4)], {"a": point(7, 8)}, lists, {"v": [1.5]})
     for name, value in {
         "r_i8": -7,
         "r_i16": -300,
@@ -76,14 +78,15 @@ def test_cpp_gives_back_what_it_is_sent(cpp_client: Any, capt: ModuleType) -> No
 
 
 @pytest.mark.timeout(500)
-def test_cpp_is_called(cpp_client: Any) -> None:
+def test_cpp_is_called(cpp: CppYarp, cpp_client: Any) -> None:
     assert cpp_client.add(2, 40) == 42
     assert cpp_client.nothing() is None and cpp_client.noargs() == 77
     assert cpp_client.fire(5) is None
     assert (cpp_client.check_defaults(), cpp_client.check_defaults(7)) == (True, False)
     assert cpp_client.tail_defaults(1, n=9) == "1 2 9 def word"
     assert cpp_client.get_long_method_name(10, "abc") == 13
-    assert cpp_client.remote_version() is None
+    newer = cpp.version >= (3, 12)  # it could not be asked before
+    assert cpp_client.remote_version() == ((0, *cpp.version, 0) if newer else None)
     assert cpp_client.add(1, 1) == 2  # what was not known has not hurt
 
 

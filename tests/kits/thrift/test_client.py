@@ -27,6 +27,7 @@ class Port:
     def __init__(self, *answers: Any) -> None:
         self.answers = [*answers]
         self.asked: list[bytes] = []
+        self.endings: list[Any] = []  # what finds the ends of the answers
         self.silent = True
 
     def ask(self, question: Any, timeout: float | None) -> Message | None:
@@ -34,6 +35,7 @@ class Port:
         if self.silent and b"getRemoteProtocolVersion" in data:
             return Message(CALL, FAILED)  # as C++ before 3.12
         self.asked.append(data)
+        self.endings.append(getattr(question, "reply_end", None))
         answer = self.answers.pop(0)
         if isinstance(answer, Exception):
             raise answer
@@ -284,6 +286,24 @@ def test_fractions_for_yarp_4_have_its_tags() -> None:
     )
     made.turn(2.5, [], 1)
     assert len(port.asked) == 3  # asked for the version once
+
+
+def test_a_float32_is_awaited_as_the_server_spells_it() -> None:
+    """Which one of YARP 4 would not be seen to end, beside an acknowledgement."""
+    module = loads("""
+        typedef double ( yarp.type = "yarp::conf::float32_t" ) float32
+        service Narrow { float32 now(); }
+    """)
+    answer = bytes.fromhex("00010000 01000000 0a000000 00005040")
+    made, port = client(module.Narrow, VERSION_4, answer, answer)
+    port.silent = False
+    assert made.now() == 3.25 == made.now()
+    assert [b"getRemoteProtocolVersion" in asked for asked in port.asked] == [True, False, False]
+    assert port.endings[-1] is not None
+    walk = port.endings[-1](1000)
+    assert walk.advance(answer + b"YA\0\0\0\0RP") == len(answer) and walk.done
+    older, port = client(module.Narrow, bytes.fromhex("00010000 01000000 80000000 00005040"))
+    assert older.now() == 3.25 and port.endings == [None]
 
 
 def test_what_has_no_fractions_asks_for_no_version(capt: ModuleType) -> None:

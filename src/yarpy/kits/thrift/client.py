@@ -52,13 +52,14 @@ class _Client:
     def _work(self, method: Method, values: tuple[Any, ...]) -> _Work:
         """A call of a method. TypeError, OverflowError for what cannot be sent."""
         data: Buffer = method.ask(*values)
+        ending = method.ending
         try:
-            if method.asks_floats and (yield from self._speaks_yarp4()):
-                data = method.yarp4_ask(values)
+            if method.minds_version and (yield from self._speaks_yarp4()):
+                data, ending = method.yarp4_ask(values), method.yarp4_ending
             if method.oneway:
                 yield Payload(data), False
                 return None
-            message = yield Payload(data, method.ending), True
+            message = yield Payload(data, ending), True
             if message is None:
                 return None
             answer = message.to_bytes()
@@ -82,7 +83,8 @@ class _Client:
         raise refused(method, why)
 
     def _speaks_yarp4(self) -> _Work:
-        """Return whether the server is of YARP 4: it is asked before the first fraction is sent."""
+        """Return whether the server is of YARP 4: it is asked before the first fraction is sent, or
+        the first float32 awaited."""
         if self._yarp4 is None:
             found = yield from self._version()
             self._yarp4 = found is not None and found[1] >= 4
@@ -111,7 +113,7 @@ class _Client:
 
 class _Sync(_Client):
     def _call(self, method: Method, values: tuple[Any, ...]) -> Any:
-        if method.oneway or (method.asks_floats and self._yarp4 is not False):
+        if method.oneway or (method.minds_version and self._yarp4 is not False):
             return self._run(self._work(method, values))
         # The same in short, where there is nothing to find out first.
         payload = Payload(method.ask(*values), method.ending)

@@ -299,6 +299,12 @@ def has_floats(kinds: Iterable[Kind]) -> bool:
     return any(kind in (FLOAT, DOUBLE) or isinstance(kind, External) for kind in within(kinds))
 
 
+def has_narrow(kinds: Iterable[Kind]) -> bool:
+    """Return whether there is a float32 among the kinds, whose tag in YARP 4.0 is that of a float64
+    in 3.x."""
+    return FLOAT in within(kinds)
+
+
 def list_code(element: Kind) -> int:
     """Return what is added to 256 in the header of a list; 0 where each element has its own tag.
 

@@ -30,13 +30,14 @@ from yarpy.kits.thrift.kind import (
     Scalar,
     flat,
     has_floats,
+    has_narrow,
     is_enum,
     kind_of,
     name_of,
 )
 from yarpy.kits.thrift.structure import _New
 from yarpy.kits.thrift.wire import fast_reader, fast_writer, reader
-from yarpy.kits.thrift.wire.extent import Ending, ending_of
+from yarpy.kits.thrift.wire.extent import Ending, ending_of, yarp4_ending_of
 from yarpy.kits.thrift.word import SERVICE, original
 
 F = TypeVar("F", bound=Callable[..., Any])
@@ -246,6 +247,17 @@ class Method:
     def ending(self) -> Ending | None:
         """The function that finds the end of its answers, where they are no Bottles."""
         return ending_of(self.result)
+
+    @cached_property
+    def yarp4_ending(self) -> Ending | None:
+        """The same for answers of YARP 4.0."""
+        return yarp4_ending_of(self.result)
+
+    @cached_property
+    def minds_version(self) -> bool:
+        """True if the server's version has to be known: for fractions among the arguments, or for
+        a float32 in the result."""
+        return self.asks_floats or (self.result is not None and has_narrow([self.result]))
 
     def yarp4_ask(self, values: Sequence[Any]) -> Buffer:
         """The request as YARP 4.0 spells it; lists of lists as 4.0.1 does."""

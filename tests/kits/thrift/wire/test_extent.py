@@ -12,7 +12,7 @@ from yarpy.data.bottle import Bottle
 from yarpy.errors import DecodeError
 from yarpy.kits.thrift import kind as kinds
 from yarpy.kits.thrift.kind import ListOf, MapOf
-from yarpy.kits.thrift.wire.extent import Extent, ending_of, version_ending
+from yarpy.kits.thrift.wire.extent import Extent, ending_of, version_ending, yarp4_ending_of
 
 FAILED = bytes.fromhex("09010000010000006661696c")
 
@@ -37,6 +37,25 @@ def test_recorded_answers(name: str, capt: ModuleType) -> None:
     assert end(ending(1 << 20), FAILED) == len(FAILED)
     reason = Bottle(["fail", "why"]).to_bytes()
     assert end(ending(1 << 20), reason) == len(reason)
+
+
+def test_answers_of_yarp_4() -> None:
+    """A float32 has the tag of a float64 there; an acknowledgement follows at once."""
+    one = "00010000 01000000"
+    narrow = ListOf(ListOf(kinds.FLOAT))
+    for kind, data in {
+        kinds.FLOAT: f"{one} 0a000000 00005040",
+        ListOf(kinds.FLOAT): f"{one} 0a010000 02000000 00005040 00005040",
+        narrow: f"{one} 0a010000 02000000 0a010000 01000000 00005040 0a010000 00000000",
+    }.items():
+        ending, answer = yarp4_ending_of(kind), bytes.fromhex(data)
+        assert ending is not None and end(ending(1 << 20), answer) == len(answer)
+        assert end(ending(1 << 20), FAILED) == len(FAILED)
+    wide = bytes.fromhex(f"{one} 14010000 01000000 14010000 01000000 0000000000000a40")
+    for ending in (ending_of, yarp4_ending_of):
+        found = ending(ListOf(ListOf(kinds.DOUBLE)))
+        assert found is not None and end(found(1 << 20), wide) == len(wide)
+    assert yarp4_ending_of(kinds.DOUBLE) is None and yarp4_ending_of(None) is None
 
 
 def test_versions() -> None:

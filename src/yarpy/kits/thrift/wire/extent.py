@@ -1,6 +1,7 @@
 """Where the answer of a method ends, where it is no Bottle: replies come without a length.
 
     list<list<i32>>               C++ writes the tag of the inner elements into the outer list
+    float32 of YARP 4.0           has the tag that a float64 has in 3.x
     getRemoteProtocolVersion      four numbers of two bytes without tags, where there is one by now:
                                   of a list with one element the second two bytes are 0
 
@@ -14,16 +15,29 @@ from collections.abc import Callable, Generator, Iterator
 from struct import Struct as Packing
 from typing import Final
 
-from yarpy.data.value import FIXED, GROUP_MASK, LIST, MAX_DEPTH, STRING, UNIT_MASK, Buffer
-from yarpy.data.walker import Walker
+from yarpy.data.value import GROUP_MASK, LIST, MAX_DEPTH, STRING, UNIT_MASK, Buffer
+from yarpy.data.walker import Walk, Walker
+from yarpy.data.yarp4 import WIDTHS_3, WIDTHS_4
 from yarpy.errors import DecodeError
-from yarpy.kits.thrift.kind import Kind, ListOf, MapOf, SetOf, is_enum, is_struct, list_code
+from yarpy.kits.thrift.kind import (
+    Kind,
+    ListOf,
+    MapOf,
+    SetOf,
+    has_narrow,
+    is_enum,
+    is_struct,
+    list_code,
+)
 
 _PAIR: Final = Packing("<ii").unpack_from
 _TRIPLE: Final = Packing("<iii").unpack_from
 _VERSION: Final = 16
 
-Ending = Callable[[int], "Extent"]
+#: What no tag of the other version is mistaken for, first in 3.x, then in 4.0.
+_WIDTHS: Final = ({**WIDTHS_4, **WIDTHS_3}, {**WIDTHS_3, **WIDTHS_4})
+
+Ending = Callable[[int], Walk]
 
 
 def ending_of(kind: Kind | None) -> Ending | None:
@@ -34,7 +48,16 @@ def ending_of(kind: Kind | None) -> Ending | None:
     return lambda limit: Extent(kind, limit)
 
 
-def version_ending(limit: int) -> Extent:
+def yarp4_ending_of(kind: Kind | None) -> Ending | None:
+    """As `ending_of`, where it is known that YARP 4.0 answers."""
+    if kind is None or not has_narrow([kind]):
+        return ending_of(kind)
+    if _is_odd(kind, set()):
+        return lambda limit: Extent(kind, limit, True)
+    return lambda limit: Walker(limit, yarp4=True)
+
+
+def version_ending(limit: int) -> Walk:
     """Return the parser that finds the end of a version."""
     return Extent(None, limit)
 
@@ -62,8 +85,10 @@ def _is_odd(kind: Kind, known: set[object]) -> bool:
 class Extent:
     """Finds the end of one answer; None for a version. See Walker."""
 
-    def __init__(self, kind: Kind | None, limit: int) -> None:
+    def __init__(self, kind: Kind | None, limit: int, yarp4: bool = False) -> None:
         self.done = False
+        self._yarp4 = yarp4
+        self._widths = _WIDTHS[yarp4]
         self._limit = limit
         self._kind = kind
         self._walker: Walker | None = None
@@ -82,7 +107,7 @@ class Extent:
                 self.done = len(view) >= _VERSION
                 return _VERSION
             if self._kind is None or code != LIST or (count == 1 and not tag & GROUP_MASK):
-                self._walker = Walker(self._limit)
+                self._walker = Walker(self._limit, self._yarp4)
             else:
                 self._steps = self._top(self._kind)
         if self._walker is not None:
@@ -145,13 +170,14 @@ class Extent:
 
     def _bottle(self) -> Iterator[int]:
         """One element of a Bottle."""
+        widths = self._widths
         waiting = [(1, 0)]
         while waiting:
             count, fixed = waiting.pop()
             if not count:
                 continue
-            if fixed in FIXED:
-                self._at += count * FIXED[fixed][1]
+            if fixed in widths:
+                self._at += count * widths[fixed]
                 continue
             waiting.append((count - 1, fixed))
             yield self._at + 8 - (4 if fixed else 0)
@@ -159,8 +185,8 @@ class Extent:
             if not tag:
                 tag = _PAIR(self._view, self._at)[0]
                 self._at += 4
-            if tag in FIXED:
-                self._at += FIXED[tag][1]
+            if tag in widths:
+                self._at += widths[tag]
                 continue
             yield self._at + 4
             number = int.from_bytes(self._view[self._at : self._at + 4], "little", signed=True)
