@@ -46,11 +46,15 @@ def test_both_read_and_print_the_same(cpp: CppYarp) -> None:
     answers = cpp.python(_CPP, input="".join(text.encode().hex() + "\n" for text in texts)).stdout
     printed = [json.loads(line) for line in answers.splitlines() if line.startswith("[[")]
     assert len(printed) == len(texts)
+    newer = {20: 10} if cpp.version >= (4, 0) else {}  # what YARP 4 calls a float64
     for text, (codes, shown) in zip(texts, printed, strict=True):
         bottle = Bottle.from_text(text)
         # (the code of a list leaves out what kind of list; that of a vocab or number does not)
         ours = [_code(item) for item in bottle]
-        assert (ours, bottle.to_text()) == ([_plain(code) for code in codes], shown), repr(text)
+        if 18 in codes:
+            continue  # a vocab of more than four letters, which only YARP 4 has
+        theirs = [newer.get(_plain(code), _plain(code)) for code in codes]
+        assert (ours, bottle.to_text()) == (theirs, shown), repr(text)
 
 
 def _code(item: object) -> int:

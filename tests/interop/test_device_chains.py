@@ -8,12 +8,12 @@ from __future__ import annotations
 import numpy as np
 import pytest
 from support.cpp import CppYarp
-from support.cpp_device import PATIENT, between, device_host
+from support.cpp_device import MOTORS, PATIENT, between, cpp_device, device_host
 from support.wait import HANG, wait_until
 
 import yarpy
 from yarpy.kits import devices
-from yarpy.kits.devices.analog.virtual import Network
+from yarpy.kits.devices.analog.virtual import PARTS, Network
 from yarpy.kits.devices.interfaces.joypad import Point, Touch
 
 pytestmark = pytest.mark.peer("g++")
@@ -165,3 +165,23 @@ def test_torques_that_cpp_estimates(network: CppYarp) -> None:
         wait_until(lambda: yarpy.is_connected("/tool/cpp", "/ours"))
         writer.write_line("1 0.5 1.5 2.5 3.5 4.5")
         wait_until(lambda: [0.5, 1.5, 2.5, 3.5, 4.5, 0.0] in told)
+
+
+@pytest.mark.parametrize("part", PARTS)
+def test_torques_for_motors_of_cpp(network: CppYarp, part: int) -> None:
+    """Its server gives on what ours would, and zeros as soon as nothing comes any more."""
+    device_host(network)
+    places = PARTS[part]
+    torques = [1.5 + place for place in range(7)]  # place 0 is that of the part
+    channels = f"(0 {len(places) - 1} 0 {len(places) - 1})"
+    given = {"outer": "virtualAnalogServer", "attach": MOTORS, "name": "/cpp"}
+    given |= {"networks": "(inner)", "inner": channels, "robotName": "robot"}
+    with (
+        cpp_device(network, "attached", **given) as motors,
+        yarpy.BufferedPort("/torques:o") as port,
+    ):
+        port.connect("/cpp")
+        port.write([part, *torques])
+        told = (0 if place is None else torques[place - 1] for place in places)
+        motors.wait_line("^told " + " ".join(f"{torque:g}" for torque in told) + "$", stream="out")
+        motors.wait_line("^told" + " 0" * len(places) + "$", stream="out")

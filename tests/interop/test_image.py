@@ -7,6 +7,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from support.cpp import CppYarp
 from support.cpp_program import CppProgram
 from support.wait import HANG
 
@@ -32,7 +33,7 @@ assert port.open('/cpp')
 def make(kind, width, height, quantum, top_down=True):
     image = getattr(yarp, kind)()
     image.setQuantum(quantum)
-    image.setTopIsLowIndex(top_down)
+    if not top_down: image.setTopIsLowIndex(False)
     image.resize(width, height)
     size = image.getRawImageSize()
     memory = bytes((7 * i + i // 256) % 251 for i in range(size))
@@ -45,7 +46,7 @@ def read(kind):
     image = getattr(yarp, kind)()
     assert port.read(image)
     return [image.width(), image.height(), image.getPixelCode(), image.getRowSize(),
-            image.topIsLowIndex(), memory(image)]
+            hasattr(image, "topIsLowIndex") and image.topIsLowIndex(), memory(image)]
 """
 
 
@@ -121,8 +122,10 @@ def test_pixels_are_where_they_belong(side: CppProgram, port: yarpy.Port) -> Non
     assert seen.sum() == 150
 
 
-def test_bottom_up(side: CppProgram, port: yarpy.Port) -> None:
+def test_bottom_up(cpp: CppYarp, side: CppProgram, port: yarpy.Port) -> None:
     """The first row in memory is the bottom one: an array still begins at the top."""
+    if cpp.version >= (3, 10):
+        pytest.skip("since YARP 3.10 no image is bottom up")
     side.begin("image = make('ImageMono', 6, 4, 8, False)\nport.write(image)\nmemory(image)")
     image = port.read(timeout=HANG).value
     stored = rows(side.end(), 8, 6)

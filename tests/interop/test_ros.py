@@ -25,6 +25,8 @@ def test_topics_of_cpp_are_known_to_the_master(
     cpp: CppYarp, tmp_path_factory: pytest.TempPathFactory
 ) -> None:
     """`yarp read` and `yarp write` with topics: C++ leaves the calls to the name server."""
+    if cpp.version >= (4, 0):
+        pytest.skip("YARP 4 knows no topics of ROS any more")
     with (
         ros_graph(tmp_path_factory.mktemp("ros")) as graph,
         yarpy.NameServer(beside={"ros": graph.uri}) as server,

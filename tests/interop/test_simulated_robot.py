@@ -101,6 +101,8 @@ def test_clients_of_cpp_see_and_feel(our_names: CppYarp, head) -> None:
 
 def test_page_drives_a_robot_of_cpp(our_names: CppYarp, head, browser: Browser) -> None:
     """The ports of the C++ board answer the page in their own HTTP."""
+    if our_names.version >= (4, 0):
+        pytest.skip("boards of C++ YARP 4 know no questions in words, which the page asks")
     # It sends no events, which the page has to try first, and hangs up after each answer.
     browser.excuse(r"/r\?sse|net::ERR_")
     with chain(our_names), yarpy.Port("/panel", callback=lambda message: None) as port:

@@ -14,6 +14,7 @@ from typing import Any
 import numpy as np
 import pytest
 from support.cpp import CppYarp
+from support.cpp_carrier import needs
 from support.cpp_types import CppTypes, types_program
 from support.peer import brings
 from support.process import Process
@@ -28,6 +29,7 @@ CARRIERS = (
     *("tcp", "fast_tcp", "udp", "mcast", "text", "text_ack"),
     *("shmem", "unix_stream", "tcpros"),
 )
+PLUGINS = ("shmem", "unix_stream", "tcpros")
 RGB = np.array([[10 * y + x for x in range(15)] for y in range(3)], "u1").reshape(3, 5, 3)
 MONO = np.array([[10 * y + x for x in range(5)] for y in range(3)], "u1")
 SAMPLES = np.array([[100 * at - 250 for at in range(3)], [100 * at + 50 for at in range(3)]], "i2")
@@ -84,6 +86,7 @@ class Ends:
     """
 
     def __init__(self, programs: CppYarp, program: str, sends: bool) -> None:
+        self._programs = programs
         self._start = lambda: programs.popen(program=program)
         self._sends = sends
         self._carrier = ""
@@ -94,6 +97,8 @@ class Ends:
     def over(self, carrier: str) -> CppTypes:
         """The program of C++, once both are connected by this carrier."""
         if self._carrier != carrier:
+            if carrier in PLUGINS:
+                needs(self._programs, carrier)
             self.close()
             ours, theirs = ("/ours/out", "/cpp/in") if self._sends else ("/ours/in", "/cpp/out")
             self.port = yarpy.Port(ours)

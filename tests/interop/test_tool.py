@@ -55,7 +55,7 @@ def test_read_from_us(network: CppYarp) -> None:
             reader.wait_line(f"^{count} 2.25", stream="out")
             reader.wait_line(f'"over {carrier}" 0.5$', stream="out")
         port.write([0, "a line as it is"])
-        reader.wait_line("^a line as it is$", stream="out")
+        reader.wait_line(r"(^|2\.2500\s+)a line as it is$", stream="out")  # YARP 4: behind it
         port.write([1, "<EOF>"])
         assert reader.wait() == 0
         wait_until(lambda: port.write(["anybody?"]) == 0 and not port.outputs)

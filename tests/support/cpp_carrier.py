@@ -4,6 +4,7 @@ yarp = carrier_program(cpp, "shmem")         # MissingPeer says why there is non
 cpp.popen("read", "/cpp", program=yarp)
 """
 
+import pytest
 from support.cpp import CppYarp
 from support.cpp_link import linked
 
@@ -21,4 +22,11 @@ _LIBRARIES = ("YARP_companion", "YARP_sig", "YARP_os", "YARP_init")
 
 def carrier_program(cpp: CppYarp, carrier: str) -> str:
     """A `yarp` with `carrier`, for `popen(..., program=)`. Or MissingPeer."""
+    needs(cpp, carrier)
     return str(linked(cpp, carrier, _SOURCE, [carrier], _LIBRARIES))
+
+
+def needs(cpp: CppYarp, carrier: str) -> None:
+    """Skip the test where an installation was built without this plugin."""
+    if cpp.package is None and not (cpp.root / f"share/yarp/plugins/{carrier}.ini").exists():
+        pytest.skip(f"{cpp.root} has no carrier {carrier}: build it there, if it is not too new")

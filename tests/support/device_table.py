@@ -130,11 +130,15 @@ ALSO: Final = {"IRGBDSensor": "IDepthVisualParams"}
 #: What no C++ here has, or was not asked for when it was recorded.
 _SINCE: Final = ("ILinearVelocitySensors", "IThreeAxisAngularAccelerometers")
 #: What was not tried with 3.9.1.
-_NOT_3_9: Final = ("IFrameGrabberControlsDC1394",)
+_NOT_3_9: Final = ("IFrameGrabberControlsDC1394", "IVirtualAnalogSensor")
 #: What only boards of 4.0 have.
 _BOARD_4: Final = ("IJointBrake", "IVelocityDirect")
 #: What was not tried with 4.0.0.
-_NOT_4: Final = ("AnalogSensor", "VirtualAnalogServer")
+_NOT_4: Final = ("AnalogSensor",)
+
+#: What icub-main has, not YARP, and the test of what its programs were recorded to say.
+_ICUB: Final = ("ICartesianControl", "IGazeControl")
+_RECORDED: Final = "tests/kits/devices/controllers/test_icub.py"
 
 _ALONE: Final = "C++ has no server or client of it: it stays within a program"
 _OLD: Final = "C++ has none of it any more"
@@ -174,12 +178,12 @@ def table() -> str:
         for each in (view, *ALSO.get(view, "").split()):
             rows.setdefault(each, (name, interface.NWS, interface.NWC, interface.FAKE))
     lines = [
-        "| interface | here | server (nws), client (nwc), simulated | view | tried with |",
-        "|---|---|---|---|---|",
+        "| interface | here | server (nws), client (nwc), simulated | view | tried with | by |",
+        "|---|---|---|---|---|---|",
     ]
     for each in sorted(NAMES):
         if each not in rows:
-            lines.append(f"| `{each}` | {WHY[each]} | | | |")
+            lines.append(f"| `{each}` | {WHY[each]} | | | | |")
             continue
         name, *devices = rows[each]
         there = ", ".join(f"`{device}`" for device in devices if device)
@@ -192,7 +196,14 @@ def table() -> str:
         tried = [version for version in tried if version != "3.9.1" or each not in _NOT_3_9]
         tried[:1] = [f"C++ {version}" for version in tried[:1]]
         tried = [] if each in _SINCE else tried
-        lines.append(f"| `{each}` | `{name}` ✔ | {there} | {view} | {', '.join(tried)} |")
+        among = among & LATEST if each in _BOARD_4 else among
+        by = ", ".join(f"[{file[5:-3]}](../tests/interop/{file})" for file in sorted(among))
+        if each in _ICUB:
+            assert (ROOT / _RECORDED).exists()
+            tried, by = ["icub-main 2.6"], f"[icub](../{_RECORDED})"
+        by = by if tried else ""
+        tested = f"{', '.join(tried)} | {by}"
+        lines.append(f"| `{each}` | `{name}` ✔ | {there} | {view} | {tested} |")
     return "\n".join(lines) + "\n"
 
 
