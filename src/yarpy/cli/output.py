@@ -1,7 +1,8 @@
 """Values as people and scripts see them: lines of text and of JSON.
 
 Rules: JSON keeps what it can: lists and dicts as they are, a vocab as `"[ok]"`, bytes as
-`{"type": "blob", "base64": "..."}`, numbers that JSON lacks as the strings "nan", "inf", "-inf".
+`{"type": "blob", "base64": "..."}`, numbers that JSON lacks as the strings "nan", "inf", "-inf",
+and sounds and arrays of Python as web pages get them.
 (The JSON of web pages, `yarpy.data.json`, is another: it makes objects of lists that look so.)
 One value per line, so that a stream of them can be read line by line.
 """
@@ -34,6 +35,12 @@ def jsonable(value: Any) -> Any:
         return {"type": "blob", "base64": base64.b64encode(value).decode("ascii")}
     if isinstance(value, dict):
         return {plain_text(key): jsonable(item) for key, item in value.items()}
+    if isinstance(value, complex):
+        return [jsonable(value.real), jsonable(value.imag)]
+    if not isinstance(value, list) and (hasattr(value, "to_wire") or hasattr(value, "dtype")):
+        from yarpy.data.json import to_json
+
+        return json.loads(to_json(value))  # sounds, arrays of no type of YARP's ...
     return [jsonable(item) for item in value]
 
 

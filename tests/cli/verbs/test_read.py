@@ -4,6 +4,7 @@ import json
 import re
 import signal
 
+import numpy as np
 import pytest
 from support.system import NO_MEMFD
 from support.wait import HANG
@@ -94,6 +95,46 @@ def test_json(cli, writer):
     assert [json.loads(line) for line in process.stdout.splitlines()] == [
         {"source": "/read/writer", "envelope": "3 4.5", "value": ["x", 1, [2.5]]},
         {"source": "/read/writer", "envelope": "", "value": "a line"},
+    ]
+
+
+def test_what_is_no_list_is_shown_by_what_it_is(cli, writer):
+    sound = yarpy.Sound([[1, 2, 3], [4, 5, 6]], 8000)
+    with cli.start("read", "/read/s", "/read/writer") as process:
+        assert writer.wait_for_outputs(timeout=HANG)
+        writer.write(sound)
+        writer.write(yarpy.Sound([7]))
+        process.wait_line("1 samples", stream="out")
+    assert process.stdout == (
+        "<sound 8000 Hz, 2 channels, 3 samples>\n<sound 16000 Hz, 1 channel, 1 samples>\n"
+    )
+    assert "cannot be printed" not in process.stderr
+
+
+def test_json_of_what_python_alone_has(cli, writer):
+    sent = [
+        yarpy.Sound([1, 2], 8000),
+        [None, True, float("nan"), yarpy.Vocab("ok"), b"x"],
+        {1: 2},
+        {"a b": (1, None)},
+        2.5 - 1j,
+        {"array": np.array([1, 2], "u1"), "sound": yarpy.Sound([3])},
+    ]
+    with cli.start("read", "--json", "/read/j", "/read/writer") as process:
+        assert writer.wait_for_outputs(timeout=HANG)
+        for value in sent:
+            writer.write(value)
+        process.wait_line('"sound": {"type": "sound"', stream="out")
+    assert [json.loads(line)["value"] for line in process.stdout.splitlines()] == [
+        {"type": "sound", "frequency": 8000, "channels": [[1, 2]]},
+        [None, True, "nan", "[ok]", {"type": "blob", "base64": "eA=="}],
+        {"1": 2},
+        {"a b": [1, None]},
+        [2.5, -1.0],
+        {
+            "array": {"type": "array", "dtype": "|u1", "shape": [2], "base64": "AQI="},
+            "sound": {"type": "sound", "frequency": 16000, "channels": [[3]]},
+        },
     ]
 
 

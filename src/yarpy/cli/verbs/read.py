@@ -2,10 +2,12 @@
 
 Prints each message as a line of Bottle text. An integer and a string are a line that somebody sent
 verbatim: only the string is printed, and the integer 1 ends the reader. Of an image the kind and
-the size are printed; `--json` prints all of it.
+the size are printed, of a sound how long it is; `--json` prints all of it, and what a program in
+Python said of its types (`yarpy.type`) is then no element, but obeyed.
 
-Differs from C++: an image is not printed byte by byte; a port that cannot be opened is exit code 1,
-not 0; standard output holds the messages and nothing else, log lines go to standard error.
+Differs from C++: an image is not printed byte by byte, and a sound is printed; a port that cannot
+be opened is exit code 1, not 0; standard output holds the messages and nothing else, log lines go
+to standard error.
 Exit codes: 0 also after ^C; 1 the port cannot be opened.
 """
 
@@ -22,6 +24,7 @@ from yarpy.cli.output import print_json, print_line
 from yarpy.cli.ports import ANY, hear_from, open_port
 from yarpy.cli.signals import Interrupted
 from yarpy.cli.stderr import complain
+from yarpy.data.python.description import KEY
 
 TRIM = 80
 
@@ -63,24 +66,30 @@ class Printer:
     def show(self, message: yarpy.Message) -> bool:
         """Print `message`; False when it says that there will be no more."""
 
+        value = message.value
+        if isinstance(value, yarpy.Sound):  # which is no list
+            self._print(message, value, _length(value))
+            return True
         bottle = message.as_(yarpy.Bottle)
         verbatim = len(bottle) == 2 and type(bottle[0]) is int and type(bottle[1]) is str
         if verbatim and bottle[0] == 1:
             return False
+        if verbatim:
+            self._print(message, bottle[1], bottle[1])
+        elif self._json:
+            self._print(message, value if _is_described(bottle) else bottle, "")
+        else:
+            self._print(message, bottle, _summary(message) or bottle.to_text())
+        return True
+
+    def _print(self, message: yarpy.Message, value: Any, line: str) -> None:
         if self._json:
-            print_json(
-                {
-                    "source": message.source,
-                    "envelope": message.envelope,
-                    "value": bottle[1] if verbatim else bottle,
-                }
-            )
-            return True
+            source, envelope = message.source, message.envelope
+            print_json({"source": source, "envelope": envelope, "value": value})
+            return
         if self._envelope and message.envelope:
             print_line(f"{message.envelope} ")
-        line = bottle[1] if verbatim else _summary(message) or bottle.to_text()
         print_line(line[: self._trim] if self._trim else line)
-        return True
 
     def follow(self, port: yarpy.BufferedPort, once: bool = False) -> None:
         """Print what arrives until the port closes or the messages say that they end."""
@@ -93,6 +102,17 @@ class Printer:
                 complain(f"a message from {message.source} cannot be printed: {error}")
             if once:
                 return
+
+
+def _length(sound: yarpy.Sound) -> str:
+    of = "1 channel" if sound.channels == 1 else f"{sound.channels} channels"
+    return f"<sound {sound.frequency} Hz, {of}, {sound.length} samples>"
+
+
+def _is_described(bottle: yarpy.Bottle) -> bool:
+    """Return whether a program in Python has said of which of its types the elements are."""
+    last = bottle[-1] if bottle else None
+    return isinstance(last, list) and last[:1] == [KEY]
 
 
 def _summary(message: yarpy.Message) -> str:
