@@ -9,7 +9,7 @@ import time
 
 import pytest
 from support.lasted import lasted
-from support.system import NO_UNIX_SOCKETS
+from support.system import NO_MEMFD, NO_UNIX_SOCKETS
 from support.wait import wait_until
 
 import yarpy
@@ -102,9 +102,9 @@ def test_others_get_what_was_written_though_one_takes_nothing() -> None:
 def test_a_close_in_good_order_says_nothing(caplog: pytest.LogCaptureFixture) -> None:
     names = yarpy.LocalNames()
     with yarpy.BufferedPort("/in", names=names, strict=True) as in_:
-        carriers = ["tcp", "fast_tcp", "text", "text_ack", "unix_stream", "memory", "local"]
-        if NO_UNIX_SOCKETS:  # nor what goes over them
-            carriers = ["tcp", "fast_tcp", "text", "text_ack", "local"]
+        carriers = ["tcp", "fast_tcp", "text", "text_ack", "local"]
+        carriers += [] if NO_UNIX_SOCKETS else ["unix_stream"]
+        carriers += [] if NO_MEMFD else ["memory"]
         for carrier in carriers:
             with yarpy.Port("/out", names=names) as out:
                 out.connect("/in", carrier)

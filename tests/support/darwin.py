@@ -124,6 +124,22 @@ def _asked_by_us() -> bool:
     return False
 
 
+def _hide_from_stat() -> None:
+    """Asking whether a file exists is no event that an audit hook hears of."""
+    real = os.stat
+
+    def stat(path: Any, *words: Any, **named: Any) -> os.stat_result:
+        told = os.fspath(path) if isinstance(path, os.PathLike) else path
+        if isinstance(told, str) and told.startswith(LINUX_ONLY) and _asked_by_us():
+            raise FileNotFoundError(errno.ENOENT, os.strerror(errno.ENOENT), told)
+        return real(path, *words, **named)
+
+    os.stat = stat
+    for able in (os.supports_dir_fd, os.supports_fd, os.supports_follow_symlinks):
+        if real in able:
+            able.add(stat)
+
+
 def pretend() -> None:
     """Begin, for the rest of this process."""
     seen: dict[str, ModuleType] = {
@@ -141,12 +157,14 @@ def pretend() -> None:
     ) -> ModuleType:
         module = real(name, globals, locals, fromlist or (), level)
         asker = str((globals or {}).get("__file__"))
-        if asker.startswith(ROOT) and asker not in (__file__, OF_THE_KERNEL):
+        ours = asker.startswith(ROOT) and "site-packages" not in asker
+        if ours and asker not in (__file__, OF_THE_KERNEL):
             return seen.get(module.__name__, module)
         return module
 
     builtins.__import__ = of_darwin
     sys.addaudithook(_audit)
+    _hide_from_stat()
     multiprocessing.set_start_method("spawn")
 
 

@@ -11,7 +11,7 @@ from contextlib import closing
 from pathlib import Path
 
 import pytest
-from support.system import NO_ROOT, NO_UNIX_SOCKETS
+from support.system import NO_ROOT, NO_TAKEN, NO_UNIX_SOCKETS
 from support.wait import HANG
 
 from yarpy.errors import LocalProtocolError, PortClosed, Timeout
@@ -62,6 +62,7 @@ def test_two_sides_meet_and_the_path_is_gone(directory: Path) -> None:
     listening.close()
 
 
+@pytest.mark.skipif(bool(NO_TAKEN), reason=NO_TAKEN)
 def test_what_was_taken_is_not_known_once_another_thread_has_closed_it() -> None:
     listening, dialling = meet()
     dialling.send([b"there"])

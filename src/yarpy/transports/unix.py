@@ -130,12 +130,18 @@ class UnixTransport(TcpTransport):
     def taken(self, sent: int, received: int) -> tuple[int, bool] | None:
         """Return how much the peer has read, and whether that was all before it hung up. What it
         has not read takes room in our send buffer; more than fits there, it has read. If it closes
-        before it has read all, the system says so once, and throws the rest away after that."""
+        before it has read all, the system says so once, and throws the rest away after that. Other
+        systems than Linux do not tell."""
+        if sys.platform != "linux":
+            return None
+        import fcntl
+
+        unread = array.array("i", [0])
         try:
-            room = _unread(self.sock)
+            fcntl.ioctl(self.sock.fileno(), _SIOCOUTQ, unread)
             if self.sock.getsockopt(socket.SOL_SOCKET, socket.SO_ERROR):
                 self._reset = True
-            if not room and not self._reset:
+            if not unread[0] and not self._reset:
                 return sent, self.ended() and not self._reset
             return sent - self.sock.getsockopt(socket.SOL_SOCKET, socket.SO_SNDBUF), False
         except (OSError, ValueError):  # or another thread has closed the socket
@@ -159,18 +165,6 @@ class UnixTransport(TcpTransport):
         super().close()
         if self._listen:
             Path(self._path).unlink(missing_ok=True)
-
-
-def _unread(sock: socket.socket) -> int:
-    """Return about how many bytes the peer has not read, at least 1 where the system does not
-    tell."""
-    if sys.platform != "linux":
-        return 1
-    import fcntl
-
-    found = array.array("i", [0])
-    fcntl.ioctl(sock.fileno(), _SIOCOUTQ, found)
-    return found[0]
 
 
 class Unix(Opener):

@@ -57,7 +57,8 @@ def test_threads(ports: Ports) -> None:
     try:
         controls.make(change)
     except LocalProtocolError as error:
-        assert "real-time scheduling" in str(error)  # no right to: it says so
+        # No right to, or no such thing: it says so.
+        assert "real-time scheduling" in str(error) or "thread priorities" in str(error)
         return
     # Windows has levels, and tells the least priority of one.
     given = ("SCHED_RR", 1) if sys.platform == "win32" else ("SCHED_FIFO", 30)

@@ -1,6 +1,7 @@
 """What a running application answers."""
 
 import os
+import sys
 
 import pytest
 
@@ -13,7 +14,7 @@ from yarpy.limit import CONTROL_REPLY
 
 @pytest.fixture
 def supervisor() -> Supervisor:
-    return Supervisor(Application("app", modules=[Module("a", "sleep")]))
+    return Supervisor(Application("app", modules=[Module("a", sys.executable)]))
 
 
 def test_status(supervisor: Supervisor) -> None:

@@ -6,6 +6,7 @@ Another user is made where we may become one; a stranger comes from an address t
 import os
 import socket
 import subprocess
+import sys
 import urllib.error
 import urllib.request
 from pathlib import Path
@@ -16,6 +17,7 @@ from support.wait import HANG, wait_until
 
 import yarpy
 from yarpy.errors import AccessRefused
+from yarpy.kits.launch.run import permission
 from yarpy.kits.launch.run.allowed import Allowed
 from yarpy.kits.launch.run.client import RunClient
 from yarpy.kits.launch.run.permission import RunGate, user_of
@@ -65,7 +67,7 @@ def test_whose_program_is_at_the_other_end() -> None:
         answered, _ = listener.accept()
         with answered:
             peer = Peer("127.0.0.1", True, ends=(caller.getsockname(), listener.getsockname()))
-            if not Path("/proc/net/tcp").exists():
+            if sys.platform != "linux":
                 assert user_of(peer) is None  # and so nobody is believed
                 caller.close()
                 return
@@ -74,6 +76,13 @@ def test_whose_program_is_at_the_other_end() -> None:
             assert user_of(peer) is None and "another user" in why(peer)
     assert user_of(Peer("127.0.0.1", True)) is None
     assert user_of(Peer("x", True, ends=(("x", 1), ("::1", 2)))) is None
+
+
+def test_where_nobody_tells_whose_program_it_is(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(permission, "_TABLES", ())
+    here = Peer("127.0.0.1", True, ends=(("127.0.0.1", 1), ("127.0.0.1", 2)))
+    assert "unlike Linux, does not tell" in why(here)
+    assert "only its owner on that computer may" in why(FAR)
 
 
 # What anybody can type into telnet.
@@ -149,6 +158,7 @@ def test_the_owner_may(node: RunClient) -> None:
     assert [one.tag for one in node.running()] == ["a"]
 
 
+@pytest.mark.skipif(sys.platform != "linux", reason="only Linux tells whose program asks")
 def test_a_list_is_for_the_owner_as_well(serve, names: LocalNames) -> None:
     serve(allowed=Allowed(["sleep"]))
     with RunClient("/node", names=names) as node:

@@ -11,6 +11,7 @@ pages never: the browser that shows them is a program of the same user.
 
 from __future__ import annotations
 
+import os
 import sys
 from typing import Final
 
@@ -44,6 +45,12 @@ class RunGate(Gate):
             return ""
         if not (peer.names or peer.key):
             who = f"a program of another user of {peer}" if peer.here else str(peer)
+            if peer.here and not any(map(os.path.exists, _TABLES)):
+                return (
+                    f"{peer} may not start programs through {name}: this system, unlike Linux, does"
+                    " not tell whose program asks; who comes with a certificate may if the owner of"
+                    " the server says so: yarpy access allow run tls:NAME"
+                )
             return (
                 f"{who} may not start programs through {name}, only its owner on that computer may;"
                 " who comes with a certificate may if its owner says so: yarpy access allow run "
