@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import contextlib
 import queue
+import socket
 from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
@@ -171,6 +172,49 @@ def test_paho_writes_under_a_topic_alias(names: yarpy.LocalNames) -> None:
 
 
 # -- ports at mosquitto ---------------------------------------------------------------------------
+
+
+def test_the_will_of_paho_is_not_put_off(names: yarpy.LocalNames) -> None:
+    """Its session ends with its connection, as it is told, and with that its will is due."""
+    told: queue.Queue[Any] = queue.Queue()
+    delay = properties(PacketTypes.WILLMESSAGE, WillDelayInterval=3600)
+    expiry = properties(PacketTypes.CONNECT, SessionExpiryInterval=7200)
+    made = paho.Client(paho.CallbackAPIVersion.VERSION2, protocol=paho.MQTTv5)
+    made.will_set("arm", b'"gone"', properties=delay)
+    made.on_connect = lambda client, data, flags, reason, more: told.put((flags, more))
+    with yarpy.BufferedPort("/in", strict=True, names=names) as port:
+        contact = port.contact
+        made.connect(contact.host, contact.port, clean_start=False, properties=expiry)
+        made.loop_start()
+        try:
+            flags, more = told.get(timeout=HANG)
+            assert (flags.session_present, more.SessionExpiryInterval) == (False, 0)
+            sock = made.socket()
+            assert sock is not None
+            sock.shutdown(socket.SHUT_RDWR)
+            last = port.read(timeout=HANG)  # and not in an hour
+            assert last is not None and last.value == "gone"
+            flags, _ = told.get(timeout=HANG)  # it is back, and nobody knows it
+            assert not flags.session_present
+        finally:
+            made.disconnect()
+            made.loop_stop()
+
+
+def test_paho_hears_that_there_is_no_login_of_another_kind(names: yarpy.LocalNames) -> None:
+    """It would wait for the next step of that."""
+    told: queue.Queue[Any] = queue.Queue()
+    method = properties(PacketTypes.CONNECT, AuthenticationMethod="SCRAM-SHA-1")
+    made = paho.Client(paho.CallbackAPIVersion.VERSION2, protocol=paho.MQTTv5)
+    made.on_connect = lambda client, data, flags, reason, more: told.put(reason)
+    with yarpy.BufferedPort("/in", names=names) as port:
+        made.connect(port.contact.host, port.contact.port, properties=method)
+        made.loop_start()
+        try:
+            assert str(told.get(timeout=HANG)) == "Bad authentication method"
+        finally:
+            made.disconnect()
+            made.loop_stop()
 
 
 @pytest.mark.peer("mosquitto")

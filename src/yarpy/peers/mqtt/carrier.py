@@ -75,6 +75,9 @@ class Mqtt(MqttPeer):
             stream.write(mqtt.packet(mqtt.CONNACK, b"\0\1"))
             raise RemoteProtocolError(f"a client with version {self.version} of MQTT")
         wishes = said.properties() if self.version == mqtt.V5 else {}
+        if mqtt.METHOD in wishes:
+            stream.write(self._connack(mqtt.NO_METHOD))
+            raise RemoteProtocolError("a client that wants to log in in several steps (AUTH)")
         self.most = int.from_bytes(wishes.get(mqtt.MOST_BYTES, b""), "big")
         client = said.string()
         if not client and not flags & CLEAN and self.version == mqtt.V3:

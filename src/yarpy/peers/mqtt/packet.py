@@ -40,6 +40,8 @@ NO_MATCHING_SUBSCRIBERS: Final = 0x10  # the reason in a PUBACK: nobody has subs
 
 NO_SHARING: Final = 0x9E  # the reason in a SUBACK: there are no shared subscriptions
 
+NO_METHOD: Final = 0x8C  # the reason in a CONNACK: there are no logins of that kind
+
 WITH_WILL: Final = 0x04  # the reason in a DISCONNECT: the will is to be published all the same
 
 RESPONSE_TOPIC: Final = 0x08
@@ -47,6 +49,7 @@ CORRELATION_DATA: Final = 0x09
 SUBSCRIPTION: Final = 0x0B  # the number of a subscription, which its messages have
 SESSION_EXPIRY: Final = 0x11  # of a session, in seconds
 SERVER_KEEP_ALIVE: Final = 0x13
+METHOD: Final = 0x15  # of a login in several steps
 RECEIVE_MAXIMUM: Final = 0x21
 RETAIN_AVAILABLE: Final = 0x25
 MOST_BYTES: Final = 0x27  # of a packet that the peer takes
