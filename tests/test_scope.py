@@ -17,6 +17,13 @@ from yarpy.errors import LinkClosed, PortClosed, Timeout
 from yarpy.scope import Calls, Scope, Waiter
 
 
+def test_a_time_limit_that_is_never_over_is_none():
+    with pytest.raises(ValueError, match="not nan"):
+        scope.moment(float("nan"))
+    with pytest.raises(TypeError, match="number of seconds"):
+        scope.moment("1")
+
+
 def test_without_a_scope_nothing_is_limited():
     assert scope.until() is None
     assert scope.until(5.0) == 5.0

@@ -46,10 +46,12 @@ _CURRENT: Final[ContextVar[Scope | None]] = ContextVar("yarpy scope", default=No
 
 def moment(timeout: float | None) -> float | None:
     """Return when `timeout` seconds from now are over; None for no limit. Raises TypeError for what
-    is no number."""
+    is no number, and ValueError for `nan`, which is never over."""
     if timeout is None:
         return None
     try:
+        if timeout != timeout:
+            raise ValueError("a time limit is a number of seconds or None, not nan")
         return time.monotonic() + timeout
     except TypeError:
         raise TypeError(f"a time limit is a number of seconds or None, not {timeout!r}") from None

@@ -96,3 +96,17 @@ def test_any_text(text):
         Stamp.from_text(text)
     except DecodeError:
         pass
+
+
+@pytest.mark.parametrize("count", [2**31, -(2**31) - 1, 2**40])
+def test_what_no_reader_takes_is_not_spelled(count):
+    """A message would arrive without its stamp, and nobody would say so."""
+    for spell in (Stamp(count, 1.0).to_text, Stamp(count, 1.0).to_bytes):
+        with pytest.raises(OverflowError, match=r"32 bits.*Stamp\.next"):
+            spell()
+
+
+def test_the_largest_counts_are_spelled():
+    for count in (2**31 - 1, -(2**31)):
+        stamp = Stamp(count, 1.0)
+        assert Stamp.from_text(stamp.to_text()) == stamp == Stamp.from_bytes(stamp.to_bytes())

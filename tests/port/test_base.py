@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import copy
 import gc
+import pickle
 import threading
 import time
 import warnings
@@ -51,6 +53,17 @@ def test_every_kind_is_a_port(kind: str, names: LocalNames) -> None:
     assert repr(port) == f"<{kind} /it (closed)>"
     port.close()
     assert not network.exists("/it", names=names)
+
+
+@pytest.mark.parametrize("kind", ["Port", "BufferedPort", "RpcServer", "RpcClient"])
+def test_a_port_is_not_copied(kind: str, names: LocalNames) -> None:
+    """Whoever dropped the copy would close the port."""
+    with make(kind, names) as port:
+        for attempt in (copy.copy, copy.deepcopy, pickle.dumps):
+            with pytest.raises(TypeError, match=r'"/it" can be neither copied nor pickled: .*name'):
+                attempt(port)
+        gc.collect()
+        assert not port.closed
 
 
 # ---------------------------------------------------------------------------------- connecting

@@ -37,7 +37,9 @@ class Stamp:
         return Stamp(self.count + 1 if -1 <= self.count < _MAX_COUNT else 0, time)
 
     def to_text(self) -> str:
-        """The spelling of envelopes: `7 1234.5`."""
+        """The spelling of envelopes: `7 1234.5`. OverflowError for a count that no reader takes."""
+        if not -_MAX_COUNT - 1 <= self.count <= _MAX_COUNT:
+            raise OverflowError(_beyond(self.count))
         return f"{self.count} {self.time:.15g}"
 
     @classmethod
@@ -56,7 +58,7 @@ class Stamp:
         try:
             return _WIRE.pack(256, 2, 1, self.count, 10, self.time)
         except error:
-            raise OverflowError(f"a stamp cannot count to {self.count}: 32 bits") from None
+            raise OverflowError(_beyond(self.count)) from None
 
     @classmethod
     def from_bytes(cls, data: bytes | bytearray | memoryview) -> Self:
@@ -72,3 +74,7 @@ class Stamp:
         return (self.to_bytes(),)
 
     from_wire = from_bytes
+
+
+def _beyond(count: int) -> str:
+    return f"a stamp cannot count to {count}: 32 bits; begin again at 0, as Stamp.next does"

@@ -8,7 +8,7 @@ import warnings
 from collections.abc import Callable, Mapping, Sized
 from functools import partial
 from operator import index
-from typing import Any, Self
+from typing import Any, NoReturn, Self, SupportsIndex
 
 from yarpy.carriers.web.http.page import Pages
 from yarpy.contact import Contact, parse_contact
@@ -239,6 +239,13 @@ class BasePort:
             source=self,
         )
         Thread(target=hub.close, name=f"yarpy close {hub.name}", daemon=True).start()
+
+    def __reduce_ex__(self, protocol: SupportsIndex) -> NoReturn:
+        """Whoever dropped a copy would close the port that the others have."""
+        raise TypeError(
+            f'the port "{self.name}" can be neither copied nor pickled: a process that gets its '
+            "name can connect to it"
+        )
 
     def __repr__(self) -> str:
         state = "closed" if self.closed else self.address

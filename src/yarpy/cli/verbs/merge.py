@@ -47,7 +47,7 @@ class Merger:
             self._newest[number] = elements
             merged = yarpy.Bottle(item for part in self._newest for item in part)
             self._send(merged, yarpy.Stamp(self._sent, time.time()))
-            self._sent += 1
+            self._sent = (self._sent + 1) & 0x7FFFFFFF  # what a stamp can count to
 
 
 @click.command()

@@ -132,10 +132,10 @@ class Received:
 
     @property
     def stamp(self) -> Stamp | None:
-        """Count and time as a Stamp."""
+        """Count, in 31 bits, and time as a Stamp."""
         if self.count is None or self.time is None:
             return None
-        return Stamp(self.count, self.time)
+        return Stamp(self.count & 0x7FFFFFFF, self.time)
 
 
 @dataclass(slots=True)

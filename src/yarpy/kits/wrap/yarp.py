@@ -98,7 +98,7 @@ class PortPublisher(PortEnd):
     def publish(self, item: Item) -> int:
         make = self._form
         value = make(item) if item.forms is None else item.form(self._name, make)
-        return self._write(value, f"{item.count} {item.time:.6f}")
+        return self._write(value, f"{item.count & 0x7FFFFFFF} {item.time:.6f}")
 
 
 class PortListener(PortEnd):

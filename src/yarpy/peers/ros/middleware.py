@@ -131,7 +131,7 @@ class Writer(PortEnd):
 
     def publish(self, item: Item) -> int:
         value = to_text(item.plain) if self._texts else item.plain
-        return self.port.write(value, Stamp(item.count, item.time))
+        return self.port.write(value, Stamp(item.count & 0x7FFFFFFF, item.time))
 
 
 class Reader(PortEnd):
