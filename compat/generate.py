@@ -32,7 +32,12 @@ def stub() -> str:
     lines.append("")
     for name in ("YARP_VERSION", "YARP_VERSION_SHORT"):
         lines.append(f"{name}: str")
-    for name in ("YARP_VERSION_MAJOR", "YARP_VERSION_MINOR", "YARP_VERSION_PATCH"):
+    for name in (
+        "YARP_VERSION_MAJOR",
+        "YARP_VERSION_MINOR",
+        "YARP_VERSION_PATCH",
+        "YARP_VERSION_HEX",
+    ):
         lines.append(f"{name}: int")
     lines += [f"{name}: int" for name in sorted(CONSTANTS)]
     lines.append("")

@@ -31,6 +31,20 @@ def test_what_refuses_says_what_to_do(generate: ModuleType) -> None:
         yarp.LogStream()
 
 
+def test_what_bindings_of_4_0_0_have_beside_the_recorded_names() -> None:
+    """Macros and what SWIG inherits."""
+    version = yarp.YARP_VERSION_MAJOR, yarp.YARP_VERSION_MINOR, yarp.YARP_VERSION_PATCH
+    assert yarp.YARP_VERSION_HEX.to_bytes(3, "big") == bytes(version)
+    assert isinstance(yarp.PortablePair(), yarp.PortablePairBase)
+    assert issubclass(yarp.PortablePairBase, yarp.Portable)
+    driver = yarp.PolyDriver()
+    assert driver.id() == ""
+    assert driver.open("(device fakeJoypad)") and driver.id() == "fakeJoypad"
+    assert driver.open("(device fakeJoypad) (id pad)") and driver.id() == "pad"
+    driver.setId("other")
+    assert driver.id() == "other" and driver.close()
+
+
 def test_a_topic_of_a_node() -> None:
     contact = yarp.Contact("/a")
     assert not contact.getNested().isNested()

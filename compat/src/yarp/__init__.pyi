@@ -345,6 +345,7 @@ YARP_VERSION_SHORT: str
 YARP_VERSION_MAJOR: int
 YARP_VERSION_MINOR: int
 YARP_VERSION_PATCH: int
+YARP_VERSION_HEX: int
 ALLOW_OLD_CONTROL_MODE_INTERFACE: int
 BOTTLE_TAG_BLOB: int
 BOTTLE_TAG_DICT: int
@@ -878,6 +879,9 @@ PeriodicThread_setDefaultStackSize = PeriodicThread.setDefaultStackSize
 PeriodicThread_yield_c = PeriodicThread.yield_c
 Portable_copyPortable = Portable.copyPortable
 PortablePair_copyPortable = PortablePair.copyPortable
+PortablePair_readPair = PortablePair.readPair
+PortablePair_writePair = PortablePair.writePair
+PortablePairBase_copyPortable = PortablePairBase.copyPortable
 PortablePairBase_readPair = PortablePairBase.readPair
 PortablePairBase_writePair = PortablePairBase.writePair
 Pose6D_copyPortable = Pose6D.copyPortable

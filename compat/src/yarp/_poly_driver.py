@@ -53,10 +53,19 @@ class PolyDriver(MirrorViews):
 
     def __init__(self, config: Searchable | str | None = None) -> None:
         self._device: Any = None
+        self._id = ""
         self._options = Property()
         self._waiting: dict[str, Any] | None = None  # a server that has nothing to serve yet
         if config is not None:
             self.open(config)
+
+    def id(self) -> str:
+        """Return its name: the option `id`, else the device, or what was given."""
+        return self._id
+
+    def setId(self, id: str) -> None:
+        """Give it a name."""
+        self._id = id
 
     def open(self, config: Searchable | str) -> bool:
         """Open the device that the options name; False if that fails."""
@@ -68,6 +77,7 @@ class PolyDriver(MirrorViews):
         else:
             self._options = Property(config.toString())
         name = self._options.find("device").asString()
+        self._id = self._options.check("id", Value(name)).toString()
         if name in ALIASES:
             name = ALIASES[name]
             self._options.put("device", name)

@@ -17,7 +17,7 @@ if TYPE_CHECKING:
     from yarp._connection import ConnectionReader, ConnectionWriter
 
 
-class PortablePairBase:
+class PortablePairBase(Portable):
     """`writePair(connection, head, body)` in a `write`, `readPair` in a `read`."""
 
     @staticmethod
@@ -48,7 +48,7 @@ class PortablePairBase:
         return True
 
 
-class PortablePair(Portable):
+class PortablePair(PortablePairBase):
     """Two objects, `head` and `body`; Bottles, if nothing else is given."""
 
     def __init__(self, head: Portable | None = None, body: Portable | None = None) -> None:

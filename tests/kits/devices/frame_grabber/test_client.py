@@ -93,7 +93,7 @@ def test_features(eye, camera):
 
 
 def test_what_a_camera_does_not_do(near, camera):
-    with pytest.raises(KeyError):
+    with pytest.raises(KeyError, match=rf'"{near.remote}" has no zoom: iterate'):
         near.features["zoom"]
     with pytest.raises(LocalProtocolError, match="no zoom"):
         near.features["zoom"] = 1.0

@@ -227,7 +227,7 @@ class Features(MutableMapping[str, Any]):
 
     def __getitem__(self, feature: str) -> Any:
         if feature not in self:
-            raise KeyError(feature)
+            raise KeyError(f'"{self._camera.remote}" has no {feature}: iterate to see what it has')
         index = _index(feature)
         if self._item != "feat":
             value = self._ask("get", self._item, index)[0]
