@@ -10,7 +10,11 @@ import pytest
 ROOT = Path(__file__).parents[1]
 HEAD = "| feature | works | test |\n|---|---|---|\n"
 PAGES = (
-    *(f"docs/{name}.md" for name in ("mqtt", "ros", "ros2", "thrift", "zenoh", "zeromq")),
+    # carriers: those of MPI
+    *(
+        f"docs/{name}.md"
+        for name in ("carriers", "mqtt", "ros", "ros2", "thrift", "zenoh", "zeromq")
+    ),
     "compat/wrapyfi/README.md",
 )
 _LINK = re.compile(r"\[(\w+)\]\((?:\.\./)+(tests/[\w/]+\.py)\)")
