@@ -618,6 +618,19 @@ def test_a_pair_is_told_no(
     assert not out.outputs
 
 
+def test_a_stream_speaks_the_carrier_for_text(names: yarpy.LocalNames, sockets: Sockets) -> None:
+    """It speaks nothing of ZeroMQ: to a port it is a plain connection over TCP."""
+    with yarpy.BufferedPort("/in", strict=True, names=names) as port:
+        stream = sockets.connected(zmq.STREAM, port)
+        ours = stream.getsockopt(zmq.ROUTING_ID)
+        assert stream.recv_multipart() == [ours, b""]  # it is connected
+        stream.send_multipart([ours, b"CONNECT /me\r\n"])
+        assert stream.recv_multipart() == [ours, b"Welcome /me\r\n"]
+        stream.send_multipart([ours, b"d\r\nfast 1\r\n"])
+        message = port.read(timeout=HANG)
+        assert message is not None and (message.value, message.source) == (["fast", 1], "/me")
+
+
 def test_rules_of_access_hold(
     names: yarpy.LocalNames,
     sockets: Sockets,

@@ -94,7 +94,7 @@ def test_a_port_becomes_what_fits(
     assert role.role.upper().encode() in said
 
 
-@pytest.mark.parametrize("kind", [b"PAIR", b"STREAM", b"", b"\x1b[2J", b"X" * 300])
+@pytest.mark.parametrize("kind", [b"PAIR", b"CLIENT", b"RADIO", b"", b"\x1b[2J", b"X" * 300])
 def test_sockets_that_fit_nothing_are_told(kind: bytes) -> None:
     end = End()
     carrier = Zmq(Route("", "/port", "zmq", 10002))
