@@ -28,6 +28,8 @@ class Robot:
         return image, yarpy.Sound(sound.astype("i2")), {"elbow": second / 10}
 
 
+if sys.argv[1:] not in (["publish"], ["listen"]):
+    sys.exit(__doc__)
 robot = Robot()
 with getattr(wrap, sys.argv[1])(robot.sense):
     for number in range(600 if sys.argv[1] == "publish" else 3):

@@ -23,7 +23,7 @@ class Chain:
 
 
 chain = Chain()
-role = sys.argv[1]
+role = sys.argv[1] if sys.argv[1:] else sys.exit(__doc__)
 if role == "start":
     wrap.publish(chain.first)
     for number in range(600):

@@ -24,6 +24,8 @@ class Mirror:
         return {"text": text.upper(), "said by": sys.argv[1]}
 
 
+if sys.argv[1:2] not in (["publish"], ["listen"], ["serve"], ["call"]):
+    sys.exit(__doc__)
 mirror = Mirror()
 mode, text = sys.argv[1], " ".join(sys.argv[2:])
 method = mirror.say if mode in ("publish", "listen") else mirror.answer

@@ -20,6 +20,19 @@ def names():
         yield
 
 
+def test_a_port_says_which_it_is_and_how_it_is():
+    async def main():
+        for kind in (aio.Port, aio.BufferedPort):
+            port = kind("/aio/said")
+            called = f"<aio.{kind.__name__} /aio/said"
+            assert repr(port) == f"{called} (not open)>"
+            async with port:
+                assert repr(port) == f"{called} ({port.address})>"
+            assert repr(port) == f"{called} (closed)>"
+
+    asyncio.run(main())
+
+
 def test_cancelled_opening_leaves_no_port_behind():
     async def main():
         for patience in (0, 0.0005, 0.002, 0.005):

@@ -119,6 +119,14 @@ def test_alone(name: str):
             assert places, f"no line {pattern!r} at its place in:\n{process.stdout}"
             del rest[: places[0] + 1]
         assert "Traceback" not in process.stderr, process.stderr
+        assert "did not take all" not in process.stderr, process.stderr
+
+
+@pytest.mark.parametrize("name", ["channelling.py", "forwarding.py", "mirroring.py"])
+def test_one_that_wants_a_word_says_so(name: str):
+    with start(name) as process:
+        assert process.wait() == 1
+    assert f"python examples/{name} " in process.stderr and "Traceback" not in process.stderr
 
 
 def test_talker_and_listener(server: yarpy.NameServer):

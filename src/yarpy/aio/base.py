@@ -163,6 +163,10 @@ class BasePort(Generic[P]):
         """The counts of every connection; see `yarpy.Port.stats`."""
         return self.port.stats
 
+    def __repr__(self) -> str:
+        state = "closed" if self.closed else "not open" if self._port is None else self.address
+        return f"<aio.{type(self).__name__} {self.name or '...'} ({state})>"
+
     @property
     def closed(self) -> bool:
         """Return whether `close` was called."""

@@ -1,5 +1,6 @@
 """Projects: their files, and names that are none."""
 
+import errno
 import sys
 import tomllib
 from pathlib import Path
@@ -63,3 +64,22 @@ def test_what_is_there_is_not_touched(tmp_path: Path) -> None:
     with pytest.raises(LocalProtocolError, match="is there already"):
         create("mine", tmp_path)
     assert [*(tmp_path / "mine").iterdir()] == []
+
+
+def test_nothing_is_left_where_there_is_no_room(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """The next attempt would find a folder of that name."""
+    write = Path.write_text
+
+    def fill(path: Path, text: str, encoding: str) -> int:
+        if path.name == "module.py":
+            raise OSError(errno.ENOSPC, "No space left on device")
+        return write(path, text, encoding)
+
+    with monkeypatch.context() as patched:
+        patched.setattr(Path, "write_text", fill)
+        with pytest.raises(OSError, match=r"No space left on device: .*mine"):
+            create("mine", tmp_path)
+    assert [*tmp_path.iterdir()] == []
+    create("mine", tmp_path)

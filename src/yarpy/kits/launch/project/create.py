@@ -34,7 +34,8 @@ _FILES: Final = {
 
 def create(name: str, folder: Path) -> list[Path]:
     """Write a project called `name` into a new folder of that name in `folder`; return its files.
-    Raises LocalProtocolError for a name that is none, or a folder that is there."""
+    Raises LocalProtocolError for a name that is none, or a folder that is there; OSError where it
+    cannot be written, and nothing is left of it."""
     package = name.replace("-", "_")
     if not _NAME.fullmatch(name) or len(name) > _LONGEST:
         text = f'"{name}" cannot be the name of a project: write small letters, as in ball_tracker'
@@ -44,7 +45,14 @@ def create(name: str, folder: Path) -> list[Path]:
     place = folder / name
     if place.exists():
         raise LocalProtocolError(f"{place} is there already: take another name, or remove it")
-    words = {"name": name, "package": package, **_programs()}
+    try:
+        return _write(place, {"name": name, "package": package, **_programs()})
+    except OSError as error:  # such as a full disk: half a project is none, and keeps its name
+        shutil.rmtree(place, ignore_errors=True)
+        raise OSError(error.errno, error.strerror, error.filename or str(place)) from error
+
+
+def _write(place: Path, words: dict[str, str]) -> list[Path]:
     written = []
     for source, target in _FILES.items():
         text = files(__package__).joinpath("template", source).read_text("utf-8")
