@@ -53,6 +53,8 @@ def test_code_and_sessions(page: Path, tmp_path: Path):
 def test_sessions_with_cpp(page: Path, tmp_path: Path):
     port = pages.free_port()
     with yarpy.NameServer(port), CppYarp.prepare(tmp_path).at("127.0.0.1", port) as cpp:
+        if cpp.version != (3, 5):
+            pytest.skip("the pages show what C++ YARP 3.5 says: leave YARPY_CPP_YARP out")
         pages.run(page, tmp_path, port, with_programs(cpp))
 
 
