@@ -14,7 +14,7 @@ from support.capture import Capture, groups, load_capture
 from support.difference import NOT_REPLAYED
 from support.guest import guest
 from support.live import World, hear, nothing_more, replay, say
-from support.system import NO_MARKS, NO_POLICIES
+from support.system import NO_MARKS, NO_POLICIES, NO_SCHEDULING
 from support.wait import HANG, wait_until
 
 from yarpy.data.stamp import Stamp
@@ -87,7 +87,9 @@ def prepare(world: World, name: str) -> None:
 def test_dialogue(name: str, piece: int, monkeypatch: pytest.MonkeyPatch) -> None:
     if name.startswith("admin_ros_"):
         guest("ros")
-    lacking = NO_POLICIES if "sched" in name else NO_MARKS if "qos" in name else ""
+    lacking = NO_POLICIES if "sched" in name else ""
+    if "qos" in name:
+        lacking = NO_MARKS or NO_SCHEDULING
     if lacking:
         pytest.skip(lacking)
     monkeypatch.setenv("YARPY_SCRIPTS", "network")  # C++ lets anybody attach one

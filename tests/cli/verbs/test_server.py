@@ -175,8 +175,7 @@ def test_who_is_cautious_keeps_what_was_acknowledged_when_it_is_killed(lone, por
             for thread in threads:
                 thread.start()
             wait_until(lambda: len(acknowledged) > before + 30)  # noqa: B023
-            process.signal(signal.SIGKILL)
-            process.wait()
+            process.kill()
             for thread in threads:
                 thread.join(HANG)
     with lone.start(*words) as process:

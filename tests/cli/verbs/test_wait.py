@@ -29,6 +29,12 @@ def test_the_time_is_over(here):
     assert err.startswith('error: the 0.2 s are over: no port "/wait/never" is registered')
 
 
+def test_a_wait_that_ends_early_is_not_said_again(here, monkeypatch):
+    monkeypatch.setattr(yarpy, "wait_for", lambda *_: False)
+    _, out, _ = here("wait", "/wait/never", "--timeout", "0.05")
+    assert out == "Waiting for /wait/never...\n"
+
+
 def test_it_says_what_is_missing(here, names):
     with yarpy.Port("/wait/here", names=names):
         assert here("wait", "/wait/here", "/wait/there", "--timeout", "0.2")[2] == (

@@ -26,15 +26,19 @@ def command(port: str, target: str | None, timeout: float | None) -> int:
     """Wait until PORT is alive, or until PORT sends to TARGET."""
 
     deadline = None if timeout is None else time.monotonic() + timeout
+    reminder = time.monotonic()
     while True:
-        print_line(f"Waiting for {port}->{target}..." if target else f"Waiting for {port}...")
-        left = REMIND if deadline is None else min(REMIND, deadline - time.monotonic())
+        if time.monotonic() >= reminder:  # a wait may end a little early
+            print_line(f"Waiting for {port}->{target}..." if target else f"Waiting for {port}...")
+            reminder = time.monotonic() + REMIND
+        until = reminder if deadline is None else min(reminder, deadline)
+        left = max(0.0, until - time.monotonic())
         try:
             if yarpy.wait_for(port, target, left):
                 return 0
         except yarpy.NoNameServer as error:
             warn(f"{error}; waiting for one")
-            time.sleep(max(0.0, left))
+            time.sleep(left)
         if deadline is not None and time.monotonic() >= deadline:
             missing = _missing(port, target)
             if missing:
