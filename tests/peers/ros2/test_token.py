@@ -27,6 +27,7 @@ def test_published_example() -> None:
 
 @pytest.mark.parametrize("kind", ENDPOINTS)
 def test_as_an_independent_implementation_has_them(kind: str) -> None:
+    pytest.importorskip("zenoh_ros2_sdk", reason="pip install zenoh_ros2_sdk")
     from zenoh_ros2_sdk.entity import EndpointEntity, EntityKind, NodeEntity
     from zenoh_ros2_sdk.keyexpr import endpoint_liveliness_keyexpr, node_liveliness_keyexpr
 

@@ -86,6 +86,7 @@ def test_two_nodes_of_one_name(part: Participant, caplog: pytest.LogCaptureFixtu
 
 
 def test_no_router(monkeypatch: pytest.MonkeyPatch) -> None:
+    pytest.importorskip("zenoh", reason='Zenoh: pip install "yarpy[zenoh]"')
     monkeypatch.setenv("YARPY_ZENOH", "127.0.0.1:9")
     with pytest.raises(LinkClosed, match=r"127\.0\.0\.1:9"):
         take_part(0)
