@@ -39,8 +39,6 @@ def test_file_names(tmp_path: Path) -> None:
         ('"127.0.0.1"\t10000\n//', Server("127.0.0.1", 10000)),
         ("\n\n host\n11311 ros", Server("host", 11311, "ros")),
         ("h 1 local extra words", Server("h", 1, "local")),
-        ("h port", Server("h", 0)),
-        ("h 70000", Server("h", 0)),
         ("::1 10000", Server("::1", 10000)),
         ("", None),
         ("  \n", None),
@@ -65,6 +63,9 @@ def test_address_files(text: str, expected: Server | None) -> None:
     ("text", "complaint"),
     [
         ("h 1 carrot", 'mode "carrot"'),
+        ("h port", '"port" is no port .*yarpy conf'),
+        ("h 70000", '"70000" is no port .*yarpy conf'),
+        ("h 0 yarp", '"0" is no port'),
         ("[nome]\nhost h\nport 1", r"section \[name\]"),
         ("[", "name"),
     ],

@@ -186,7 +186,13 @@ def parse_server(text: str) -> Server | None:
             f'no mode "{shown}" of a name server: use one of {known}; `yarpy conf HOST PORT` '
             "writes the file anew"
         )
-    return Server(words[0], _number(words[1]), mode)
+    number = _number(words[1])
+    if mode == YARP and not number:
+        raise AddressError(
+            f'"{words[1][:12]}" is no port of a name server, which is a number from 1 to 65535; '
+            "`yarpy conf HOST PORT` writes the file anew"
+        )
+    return Server(words[0], number, mode)
 
 
 def default_port(environment: Mapping[str, str]) -> int:

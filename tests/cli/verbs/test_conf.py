@@ -46,3 +46,14 @@ def test_what_makes_no_sense_is_not_stored(here, tmp_path, words):
     assert (said.code, said.out) == (1, "")
     assert said.err.startswith("error: ")
     assert not (tmp_path / "config").exists()
+
+
+@pytest.mark.parametrize("text", ["h 1 carrot", "h 70000 yarp", "[nome]\nhost h\n", "\x00\xff"])
+def test_a_file_that_cannot_be_used_is_written_anew(here, tmp_path, text):
+    """As those are told who meet it."""
+    (tmp_path / "config").mkdir()
+    path = tmp_path / "config" / "yarp.conf"
+    path.write_text(text, encoding="utf-8")
+    said = here("conf", "10.0.0.1", "10001")
+    assert (said.code, said.err) == (0, "")
+    assert path.read_text(encoding="utf-8") == "10.0.0.1 10001 yarp\n"

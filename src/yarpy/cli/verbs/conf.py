@@ -14,6 +14,7 @@ import os
 import click
 
 from yarpy.cli.output import print_line
+from yarpy.errors import AddressError
 from yarpy.registry import names
 
 
@@ -46,7 +47,10 @@ def command(host: str | None, port: int | None, mode: str, clean: bool) -> int:
         raise click.UsageError("Command not understood: give both HOST and PORT")
     path = server_file(directory, namespace)
     print_line(f"Configuration file:\n  {path}")
-    stored = read_server(directory, namespace) if path.exists() else None
+    try:
+        stored = read_server(directory, namespace) if path.exists() else None
+    except AddressError:  # who is told of it is sent here
+        stored = None
     if stored is not None:
         print_line(f"Stored:\n  {described(stored)}")
     write_server(directory, Server(host, port, mode, namespace))
