@@ -132,6 +132,11 @@ def test_words_that_do_not_fit() -> None:
         (OK + b"\r\n" + WHOLE[:-8] + b"\x63\0\0\0\0\0\0\0", "no answer of http://.*99 is no type"),
         (b"\0\0\0\x10" + WHOLE + b"\r\n" * 4, "does not speak HTTP .* thrift://"),
         (b"HTTP/1.1 200 OK\r\nX: " + b"x" * 20_000, "does not speak HTTP"),
+        (OK + b"Content-Length: " + b"9" * 5000 + b"\r\n\r\n", "does not speak HTTP"),
+        (
+            OK + b"Transfer-Encoding: chunked\r\n\r\n" + b"f" * 5000,
+            r"\(illegal chunk .{,200}\): is",
+        ),
         (OK + b"Content-Length: 999999999999\r\n\r\n", "an answer of 999999999999 bytes or more"),
         (
             OK + b"Transfer-Encoding: chunked\r\n\r\nffffff\r\n" + bytes(2000),

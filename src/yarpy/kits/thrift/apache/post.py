@@ -144,9 +144,10 @@ class Post(Asking):
         except h11.RemoteProtocolError as error:
             if ended:
                 raise LinkClosed("the server has closed the connection") from error
+            why = readable(str(error)[:_SHOWN])
             raise RemoteProtocolError(
-                f"what answers at {self._place} does not speak HTTP ({error}): is it a server over "
-                "a socket, thrift://?"
+                f"what answers at {self._place} does not speak HTTP ({why}): is it a server over a "
+                "socket, thrift://?"
             ) from error
         return event
 
