@@ -134,7 +134,7 @@ def test_words_that_do_not_fit() -> None:
         (b"HTTP/1.1 200 OK\r\nX: " + b"x" * 20_000, "does not speak HTTP"),
         (OK + b"Content-Length: " + b"9" * 5000 + b"\r\n\r\n", "does not speak HTTP"),
         (
-            OK + b"Transfer-Encoding: chunked\r\n\r\n" + b"f" * 5000,
+            OK + b"Transfer-Encoding: chunked\r\n\r\n" + b"f" * 5000 + b"\r\n",
             r"\(illegal chunk .{,200}\): is",
         ),
         (OK + b"Content-Length: 999999999999\r\n\r\n", "an answer of 999999999999 bytes or more"),
