@@ -52,6 +52,26 @@ def test_server_answers_from_the_loop_side_by_side(caplog):
     assert "as it was asked to" in caplog.text
 
 
+def test_what_a_handler_waits_for_is_cancelled_and_the_server_lives():
+    async def main():
+        async def answer(message: yarpy.Message) -> object:
+            if message.value == ["wait"]:
+                work = asyncio.create_task(asyncio.sleep(HANG))
+                work.cancel()
+                await work
+            return message.value
+
+        async with (
+            aio.RpcServer("/aio/server", answer),
+            aio.RpcClient("/aio/server") as client,
+        ):
+            with pytest.raises(yarpy.RemoteError, match="RuntimeError: the handler was cancelled"):
+                await client.call("wait")
+            assert await client.call("next") == ["next"]
+
+    asyncio.run(asyncio.wait_for(main(), HANG))
+
+
 def test_server_takes_plain_functions_and_closes_over_a_question():
     async def main():
         asked = asyncio.Event()

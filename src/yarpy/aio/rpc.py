@@ -71,6 +71,8 @@ class RpcServer(BasePort[rpc.RpcServer]):
             found = self._handler(message)
             return await found if isawaitable(found) else found
         except asyncio.CancelledError:
+            if not task.cancelling():  # what the handler waited for was cancelled
+                raise RuntimeError("the handler was cancelled") from None
             return Bottle([Vocab("fail"), "the server was closed meanwhile"])
         finally:
             self._working.discard(task)
