@@ -57,6 +57,8 @@ class NameService:
     `lock` is held meanwhile. Hold it yourself to look at `store` or `topology`. `is_alive(contact)`
     tells whether the port of that name still has its address; it may take a while, so it is asked
     without the lock. So is `elsewhere(name)`, which says where a name is that nobody has here.
+    `introduced(contact)` is called, with the lock, when a port has said which process it is of:
+    what a port of C++ says last when it registers.
     """
 
     def __init__(
@@ -69,6 +71,7 @@ class NameService:
         self.topology = topology
         self._is_alive = is_alive
         self.elsewhere: Callable[[str], Contact | None] | None = None
+        self.introduced: Callable[[Contact], None] = lambda contact: None
         self.lock = threading.RLock()  # a registration changes store, pools and rules together
         self._subscriber: dict[str, Callable[[list[Any]], Reply]] = {
             "subscribe": self._subscribe,
@@ -222,6 +225,8 @@ class NameService:
     def _set(self, words: list[Any], nested: bool, peer: str) -> Reply:
         name, key = _word(words, 1), _key(words)
         values = self.store.assign(name, key, [plain_text(value) for value in words[3:]])
+        if key == "process" and values and (contact := self.store.query(name)) is not None:
+            self.introduced(contact)
         return properties(name, key, values, nested)
 
     def _get(self, words: list[Any], nested: bool, peer: str) -> Reply:

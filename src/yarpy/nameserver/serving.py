@@ -10,6 +10,7 @@ import os
 import threading
 import time
 from collections.abc import Callable, Mapping
+from contextlib import suppress
 from pathlib import Path
 from queue import SimpleQueue
 from typing import TYPE_CHECKING, Final
@@ -19,7 +20,7 @@ from yarpy.contact import Contact
 from yarpy.data.bottle import Bottle
 from yarpy.data.text import plain_text
 from yarpy.data.value import Vocab
-from yarpy.errors import DecodeError, LinkClosed, Timeout, YarpError
+from yarpy.errors import AddressError, DecodeError, LinkClosed, Timeout, YarpError
 from yarpy.limit import SERVER_COMMAND, SERVER_EVENTS, SERVER_UNFINISHED
 from yarpy.link.receive.inbound import Inbound
 from yarpy.log import logger
@@ -33,7 +34,10 @@ from yarpy.nameserver.page import NamePage
 from yarpy.nameserver.reply import Reply, old
 from yarpy.nameserver.right import is_old_style, needed
 from yarpy.nameserver.store import NameStore
+from yarpy.nameserver.survey import is_port
 from yarpy.nameserver.topology import Action, Topology
+from yarpy.nameserver.versions import Versions
+from yarpy.port.answer.spelling import PROPERTY, YARP4
 from yarpy.port.assembly import open_hub
 from yarpy.port.connect import identity, probe
 from yarpy.port.connect.choosing import MEMORY
@@ -135,6 +139,7 @@ class Serving:
         self._pages = NamePage(name, self._contacts, self.service.verbs, folder)
         self._responder: Responder | None = None
         self._collector: Collector | None = None
+        self._versions = Versions(self._is_of_yarp4)
         self.delegates: list[Delegate] = []
         self._queues: list[SimpleQueue[Action | None]] = [SimpleQueue() for _ in range(WORKERS)]
         self._events: SimpleQueue[Bottle | None] = SimpleQueue()
@@ -144,6 +149,7 @@ class Serving:
                 self._database.load(self.service)
                 self._database.start()
             self._register_self()
+            self.service.introduced = self._introduced
             self._open_delegates(beside or {})
             for queue in self._queues:
                 self._start(lambda queue=queue: self._work(queue), "wiring")  # type: ignore[misc]
@@ -258,6 +264,17 @@ class Serving:
         for action in reply.actions:
             self._queues[hash((action.source, action.destination)) % WORKERS].put(action)
 
+    def _introduced(self, contact: Contact) -> None:
+        """A port says that it is there."""
+        accepts = self.service.store.values(contact.name, "accepts") or ()
+        if is_port(contact) and MEMORY not in accepts:  # which those of yarpy take
+            self._versions.ask(contact)
+
+    def _is_of_yarp4(self, contact: Contact) -> None:
+        with self.service.lock, suppress(AddressError):
+            if self.service.store.query(contact.name) == contact:
+                self.service.store.assign(contact.name, PROPERTY, [YARP4])
+
     def _register_self(self) -> None:
         answer = self.service.answer
         answer(Bottle(["register", self.name, "tcp", self.host, self.port]))
@@ -355,6 +372,7 @@ class Serving:
         for queue in self._queues:
             queue.put(None)
         self._events.put(None)
+        self._versions.close()
         if self._collector is not None:
             self._collector.close()
             self._collector = None

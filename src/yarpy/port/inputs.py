@@ -11,6 +11,7 @@ import contextlib
 import threading
 import time
 from collections.abc import Callable
+from functools import partial
 from typing import Final, Protocol
 
 from yarpy import scope
@@ -101,9 +102,15 @@ class Inputs:
         """The port's name."""
         return self._hub.name
 
-    def _guess(self) -> bool:
-        """Return whether whoever does not tell is of YARP 4."""
-        return spelling.is_yarp4(self._hub.registration.names)
+    @scope.apart
+    def _guess(self, source: str) -> bool:
+        """Return whether a port that asks, and does not tell, is of YARP 4."""
+        hub = self._hub
+        try:
+            with hub.life.calls.scope(spelling.TIMEOUT):
+                return spelling.is_yarp4(hub.registration.names, source)
+        except PortClosed:
+            return False
 
     @property
     def connections(self) -> tuple[Inbound, ...]:
@@ -141,7 +148,7 @@ class Inputs:
         """
         hub = self._hub
         link.receiver.page = hub.callbacks.page
-        link.receiver.guess = self._guess
+        link.receiver.guess = partial(self._guess, link.route.source)
         link.receiver.incoming.budget = self.budget
         try:
             hub.monitoring.incoming(link)

@@ -1,4 +1,4 @@
-"""Answers are spelled as who asks spells, else as the YARP of the name server does."""
+"""Answers are spelled as who asks spells, else as the name server says."""
 
 from __future__ import annotations
 
@@ -28,6 +28,7 @@ SILENT = Bottle(["which"])  # it does not tell
 @pytest.fixture
 def network(monkeypatch: pytest.MonkeyPatch) -> Iterator[NameClient]:
     monkeypatch.setattr(spelling, "_known", {})
+    monkeypatch.setattr(spelling, "_silent", {})
     with NameServer() as server:
         yield server.client
 
@@ -87,7 +88,7 @@ def test_in_an_event_loop(names: LocalNames) -> None:
 def test_as_the_name_server(network: NameClient, monkeypatch: pytest.MonkeyPatch) -> None:
     with monkeypatch.context() as patch:
         administer_as_yarp4(patch)
-        assert spelling.is_yarp4(network) is True
+        assert spelling.is_yarp4(network, "/who") is True
     with (
         RpcServer("/server", lambda message: Encoded(OLD), names=network),
         RpcClient("/server", carrier="tcp", names=network) as new,
@@ -97,11 +98,11 @@ def test_as_the_name_server(network: NameClient, monkeypatch: pytest.MonkeyPatch
         assert answer_to(old, SILENT) == NEW
         assert answer_to(old, Encoded(OLD)) == answer_to(old, SILENT) == OLD
     monkeypatch.setattr(probe, "introduce", lambda *given: pytest.fail("it was asked before"))
-    assert spelling.is_yarp4(network) is True
+    assert spelling.is_yarp4(network, "/who") is True
 
 
 def test_a_name_server_of_yarpy_is_none_of_yarp_4(network: NameClient) -> None:
-    assert spelling.is_yarp4(network) is False
+    assert spelling.is_yarp4(network, "/who") is False
     with (
         RpcServer("/server", lambda message: Encoded(OLD), names=network),
         RpcClient("/server", carrier="tcp", names=network) as client,
@@ -109,9 +110,39 @@ def test_a_name_server_of_yarpy_is_none_of_yarp_4(network: NameClient) -> None:
         assert answer_to(client, SILENT) == OLD
 
 
+def test_as_the_name_server_knows_who_asks(network: NameClient) -> None:
+    with (
+        RpcServer("/server", lambda message: Encoded(OLD), names=network),
+        RpcClient("/server", name="/new", carrier="tcp", names=network) as new,
+        RpcClient("/server", name="/old", carrier="tcp", names=network) as old,
+    ):
+        network.set("/new", spelling.PROPERTY, spelling.YARP4)
+        assert answer_to(new, SILENT) == NEW
+        assert answer_to(old, SILENT) == OLD
+        assert answer_to(new, Encoded(OLD)) == answer_to(new, SILENT) == OLD
+
+
+def test_a_name_server_that_is_silent_is_left_alone_for_a_while(
+    network: NameClient, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    asked: list[str] = []
+
+    def get(name: str, key: str) -> list[str]:
+        asked.append(name)
+        raise yarpy.Timeout("it is silent")
+
+    monkeypatch.setattr(network, "get", get)
+    for _ in range(3):
+        assert not spelling.is_yarp4(network, "/who")
+    assert asked == ["/who"]
+    monkeypatch.setattr(spelling, "_silent", {})
+    assert not spelling.is_yarp4(network, "admin")  # which is no name
+    assert asked == ["/who"]
+
+
 def test_a_name_server_that_is_gone(network: NameClient, monkeypatch: pytest.MonkeyPatch) -> None:
     def refuse(*given: object) -> None:
         raise yarpy.LinkClosed("nobody listens")
 
     monkeypatch.setattr(probe, "introduce", refuse)
-    assert spelling.is_yarp4(network) is spelling.is_yarp4(LocalNames()) is False
+    assert spelling.is_yarp4(network, "/who") is spelling.is_yarp4(LocalNames(), "/who") is False

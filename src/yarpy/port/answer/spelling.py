@@ -1,12 +1,15 @@
-"""How answers are spelled for whoever does not tell: as the YARP of the name server, 3 or 4.
+"""How answers are spelled for whoever does not tell: as YARP 3 does, or 4.
 
-Rules: a name server is asked once in the life of a program, when that is to be known; one that does
-not say in time which YARP it is, is of YARP 3, as are those of yarpy. Who asks with floats of its
-own is answered as it spells them, whatever this says (`link/receive/receiver.py`).
+Rules: a port of C++ cannot be asked while it waits for the answer. The name server of yarpy has
+asked it before (`nameserver/versions.py`), and says it of its name. Beside the name server of C++
+YARP 4 all that do not tell are of it; it is asked for that once in the life of a program. Who is
+not known is of YARP 3, as are ports of yarpy, which read both. Who asks with floats of its own is
+answered as it spells them, whatever this says (`link/receive/receiver.py`).
 """
 
 from __future__ import annotations
 
+import time
 from typing import Final
 
 from yarpy.contact import Contact
@@ -15,13 +18,18 @@ from yarpy.names.base import NameClient
 from yarpy.names.client import YarpNameClient
 from yarpy.port.connect import probe
 
+PROPERTY: Final = "yarp"
+YARP4: Final = "4"
 TIMEOUT: Final = 0.5  # seconds; a question is waiting for its answer meanwhile
+AGAIN: Final = 10.0  # seconds until a name server is asked again that did not answer in time
 
 _known: Final[dict[tuple[str, int], bool]] = {}
+_silent: Final[dict[tuple[str, int], float]] = {}
 
 
-def is_yarp4(names: NameClient | None) -> bool:
-    """Return whether a name service is the name server of C++ YARP 4."""
+def is_yarp4(names: NameClient | None, source: str) -> bool:
+    """Return whether the port that asks, whose name is `source`, is of C++ YARP 4. The call under
+    way limits how long that may take."""
     if not isinstance(names, YarpNameClient):
         return False
     where = names.host, names.port
@@ -30,4 +38,12 @@ def is_yarp4(names: NameClient | None) -> bool:
             _known[where] = probe.introduce(Contact("tcp", "", *where), TIMEOUT).yarp4
         except (YarpError, OSError):
             _known[where] = False
-    return _known[where]
+    if _known[where]:
+        return True
+    if not source.startswith("/") or time.monotonic() < _silent.get(where, 0.0):
+        return False
+    try:
+        return YARP4 in names.get(source, PROPERTY)
+    except (YarpError, OSError):
+        _silent[where] = time.monotonic() + AGAIN
+        return False
