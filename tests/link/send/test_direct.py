@@ -2,15 +2,19 @@
 
 from __future__ import annotations
 
+import threading
 import time
 from collections.abc import Callable
 
 import pytest
+from support.build import changes_a_constant
 from support.cut import ALL_SEEN, cut_at
-from support.outbound import at_work, connected, open_link, total
+from support.outbound import at_work, connected, open_link, read_messages, total
+from support.wait import HANG
 
 from yarpy.carriers.own.tcp import FastTcp, Tcp
 from yarpy.link.ending import NEVER, NOW, moment
+from yarpy.link.send import direct
 from yarpy.link.send.outbound import Outbound
 from yarpy.link.send.outbox import Rest
 from yarpy.wire.message import Packet
@@ -33,6 +37,23 @@ def test_what_takes_waiting_comes_back_and_is_offered_again() -> None:
         assert rest.offer(moment(0.01)) is True, "it follows by itself"
         assert link.counter.messages == 1
         far.close()
+
+
+@changes_a_constant
+def test_at_once_is_behind_the_sweeper_which_takes_no_longer_than_a_moment(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    monkeypatch.setattr(direct, "MOMENT", HANG)  # moments are long on a busy computer
+    with connected(FastTcp) as (link, far):
+        with at_work(link):
+            link.sender.sweeping = True
+            later = threading.Thread(target=link.box.offer, args=(Packet([1]), NOW))
+            later.start()
+            time.sleep(0.02)
+        later.join(HANG)
+        link.sender.sweeping = False
+        assert total(link) == 1 and link.counter.drops == 0
+        assert len(read_messages(far, 1, ack=False)) == 1
 
 
 def test_a_rest_that_nobody_comes_back_for() -> None:

@@ -12,8 +12,7 @@ from collections import deque
 from typing import TYPE_CHECKING
 
 from yarpy.link.ending import NOW
-from yarpy.link.send.lossy import MOMENT
-from yarpy.link.send.outbox import Outbox, Rest
+from yarpy.link.send.outbox import MOMENT, Outbox, Rest
 from yarpy.link.send.sender import NOTHING, PART, Hold
 
 if TYPE_CHECKING:

@@ -10,7 +10,7 @@ import time
 from typing import TYPE_CHECKING
 
 from yarpy.link.ending import NOW
-from yarpy.link.send.outbox import Outbox, Rest
+from yarpy.link.send.outbox import MOMENT, Outbox, Rest
 from yarpy.link.send.sender import ALL, NOTHING, Hold
 
 if TYPE_CHECKING:
@@ -56,7 +56,9 @@ class Direct(Outbox):
         limit = sender.slow.limit_of(limit)
         hold = Hold(sender, limit, self._ending)
         try:
-            hold.take()
+            if not hold.take() and sender.sweeping:  # which takes no longer than a moment
+                hold = Hold(sender, time.monotonic() + MOMENT, self._ending)
+                hold.take()
             sent = sender.transmit(packet, limit) if hold.held else NOTHING
         finally:
             hold.give()

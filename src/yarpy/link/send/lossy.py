@@ -16,7 +16,7 @@ import time
 from typing import TYPE_CHECKING, Final
 
 from yarpy.link.ending import NOW
-from yarpy.link.send.outbox import Outbox, Rest
+from yarpy.link.send.outbox import MOMENT, Outbox, Rest
 from yarpy.link.send.sender import ALL, NOTHING, PART, Sent
 
 if TYPE_CHECKING:
@@ -24,7 +24,6 @@ if TYPE_CHECKING:
     from yarpy.link.send.sender import Sender
     from yarpy.wire.message import Packet
 
-MOMENT: Final = 0.02  # seconds for another thread that does something short under the lock
 GIVEN: Final = 20e-6  # seconds that a flooding writer gives to a quick reader
 IN_VAIN: Final = 16  # times in a row; a reader that has taken nothing then is not quick
 

@@ -10,7 +10,7 @@ Every message is counted once: as sent, as `replaced` where newer ones win, or a
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Final
 
 from yarpy.link.ending import NOW
 from yarpy.log import logger
@@ -20,6 +20,8 @@ if TYPE_CHECKING:
     from yarpy.wire.message import Packet
 
 log = logger("yarpy.link")
+
+MOMENT: Final = 0.02  # seconds for another thread that does something short under the lock
 
 
 class Outbox:

@@ -93,6 +93,7 @@ class Sender:
         self._gathered_since = 0.0
         self._gathered_bytes = self._pieces = 0  # of those, without acknowledgements
         self._sweeper: Sweeper | None = None
+        self.sweeping = False  # it is at work, and may have the lock
 
     def obey(self, ending: Ending) -> None:
         """From now on whoever waits here goes on, or not, as the port's `ending` says."""
@@ -373,7 +374,12 @@ class Sender:
     def _sweep_up(self) -> bool:
         """Sweep for the sweeper: whether the burst may still go on. The lock is held for moments:
         writers have limits of their own."""
-        while (self.halfway or self.gathered) and not self.broken and not self.sweep(NOW):
+        while (self.halfway or self.gathered) and not self.broken:
+            self.sweeping = True
+            done = self.sweep(NOW)
+            self.sweeping = False
+            if done:
+                break
             if self.halfway:
                 self.driver.transport.wait_writable(AT_A_TIME)
             else:
