@@ -8,7 +8,6 @@ import time
 from urllib.request import urlopen
 
 import pytest
-from support.build import replaces_a_method
 from support.guest import guest
 from support.wait import HANG, wait_until
 
@@ -27,7 +26,6 @@ from yarpy.errors import (
     UnknownName,
 )
 from yarpy.link.begin.handshake import greet
-from yarpy.link.send.outbound import Outbound
 from yarpy.nameserver.local import LocalNames
 from yarpy.port import inputs
 from yarpy.port.port import Port
@@ -383,31 +381,6 @@ def test_server_that_is_restarted_is_found_by_the_next_call(names: LocalNames) -
             client.call(2, timeout=HANG)
         with RpcServer("/server", echo, names=names):
             assert client.call(3, timeout=HANG) == [3]
-
-
-@replaces_a_method
-def test_a_client_looks_for_its_server_but_not_behind_each_answer(
-    names: LocalNames, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    looks: list[bool] = []
-    with RpcServer("/server", echo, names=names), RpcClient("/server", names=names) as client:
-        assert client.call(1) == [1]
-        (link,) = client._hub.outputs.links
-        ended = Outbound.ended
-
-        def looked(outbound: Outbound) -> bool:
-            over = ended(outbound)
-            if threading.current_thread() is threading.main_thread():
-                looks.append(over)
-            return over
-
-        monkeypatch.setattr(Outbound, "ended", looked)
-        link.counter.last = time.perf_counter() - 1.0
-        assert client.call(2) == [2]
-        assert looks == [False]
-        link.counter.last = time.perf_counter() + 1.0
-        assert client.call(3) == [3]
-        assert looks == [False]
 
 
 def test_server_that_goes_away_during_the_call(names: LocalNames) -> None:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import threading
 import time
 from collections.abc import Callable
-from typing import TYPE_CHECKING, Any, ClassVar, Final, Generic, Unpack, cast
+from typing import TYPE_CHECKING, Any, ClassVar, Generic, Unpack, cast
 
 from yarpy import scope
 from yarpy.data.bottle import Bottle
@@ -35,8 +35,6 @@ from yarpy.scope import CONNECTING, Flag, Scope, apart, moment
 from yarpy.wire.message import CALL, Malformed, Message, Packet, T, is_unsent
 
 log = logger("yarpy.port")
-
-JUST_NOW: Final = 200e-6  # seconds since the last answer
 
 Handler = Callable[[Message], object]
 
@@ -321,9 +319,6 @@ class RpcClient(BasePort, Generic[T]):
             if link.carrier.delivery.lossy:
                 continue  # somebody looks on
             self._last = link.route
-            # Who answered a moment ago is still there, as far as looking could tell.
-            if not link.broken and time.perf_counter() - link.counter.last < JUST_NOW:
-                return link
             if not link.ended():
                 return link
             # The server was restarted, or the last call did not end well.
