@@ -27,7 +27,7 @@ if sys.platform == "win32":
 
     @cache
     def _in_powershell() -> bool:
-        """Whether the nearest shell is one."""
+        """Return whether the nearest shell is PowerShell."""
         names = (name.lower() for name in ancestors())
         return next((_SHELLS[name] for name in names if name in _SHELLS), False)
 
