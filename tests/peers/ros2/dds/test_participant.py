@@ -6,6 +6,8 @@ import os
 import sys
 import time
 from collections.abc import Iterator
+from concurrent.futures import ThreadPoolExecutor
+from contextlib import ExitStack
 from pathlib import Path
 
 import numpy as np
@@ -19,7 +21,9 @@ import yarpy
 from yarpy.errors import UnknownName
 from yarpy.names.address import is_loopback, local_addresses
 from yarpy.names.default import DEFAULT
-from yarpy.peers.ros2.dds.participant import LOCAL, settings
+from yarpy.peers import ros2
+from yarpy.peers.ros2.dds.participant import LOCAL, POOL, settings
+from yarpy.peers.ros2.token import PUBLISHER
 
 
 @pytest.fixture(autouse=True)
@@ -208,6 +212,26 @@ def test_a_promise_that_is_not_enough_is_named(caplog: pytest.LogCaptureFixture)
         reader.listen_to("ros2+dds+qos.default://scan~std_msgs/msg/String")
         out.connect("ros2+dds+qos.sensor://scan~std_msgs/msg/String")
         wait_until(lambda: "promises less than we ask for" in caplog.text)
+
+
+def test_several_threads_look_at_once() -> None:
+    """The library translates what others promise in variables that all threads share."""
+    qualities = {"/arm": "sensor", "/head": "latched", "/leg": "default"}
+    with ExitStack() as held:
+        node = held.enter_context(ros2.Node("one_of_many", rmw="dds"))
+        for name, qos in qualities.items():
+            node.publisher(name, "std_msgs/msg/String", qos=qos)
+        part = POOL.take(0)
+        held.callback(POOL.leave, part)
+        expected = {name: part.seen(name, PUBLISHER)[0].qos for name in qualities}
+        assert len(set(expected.values())) == len(qualities)
+
+        def look(name: str) -> set[object]:
+            return {item.qos for _ in range(100) for item in part.seen(name, PUBLISHER)}
+
+        names = [*qualities] * 2
+        with ThreadPoolExecutor(len(names)) as pool:
+            assert [*pool.map(look, names)] == [{expected[name]} for name in names]
 
 
 def test_what_was_latched() -> None:

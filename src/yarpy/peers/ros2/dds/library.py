@@ -1,10 +1,17 @@
-"""The library of DDS: whether it is there, and how its objects are deleted."""
+"""The library of DDS: whether it is there, who may use it when, and how its objects are deleted.
+
+Rules: it translates the QoS of others, and types, in variables that all threads share. So whatever
+asks it who is there, or makes a class of it, does so in `turn`.
+"""
 
 from __future__ import annotations
 
-from typing import Any
+import threading
+from typing import Any, Final
 
 from yarpy.errors import UnknownPlugin
+
+turn: Final = threading.RLock()  # what is collected meanwhile may delete something
 
 
 def load() -> Any:

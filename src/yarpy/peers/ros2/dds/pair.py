@@ -21,7 +21,7 @@ from typing import Any, Final, NamedTuple
 
 from yarpy.errors import UnknownName, UnknownType
 from yarpy.peers.ros2 import kind as kinds
-from yarpy.peers.ros2.dds.library import delete, load
+from yarpy.peers.ros2.dds.library import delete, load, turn
 from yarpy.peers.ros2.dds.participant import Participant
 from yarpy.peers.ros2.dds.qos import dds_qos
 from yarpy.peers.ros2.key import Key
@@ -160,7 +160,8 @@ class Pair:
     def _is_met(self, writer: int) -> bool:
         """Return whether we know the reader of a client; True if the client has gone."""
         try:
-            asks = None if self._closed else self.reader.get_matched_publication_data(writer)
+            with turn:
+                asks = None if self._closed else self.reader.get_matched_publication_data(writer)
         except load().DDSException:
             return True
         if asks is None:
@@ -231,7 +232,8 @@ class Pair:
         found = []
         for handle in getattr(half, f"get_matched_{what}s")():
             try:
-                found.append(getattr(half, f"get_matched_{what}_data")(handle))
+                with turn:
+                    found.append(getattr(half, f"get_matched_{what}_data")(handle))
             except load().DDSException:
                 continue  # it has just gone
         return [item for item in found if item is not None]

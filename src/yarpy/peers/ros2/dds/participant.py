@@ -20,7 +20,7 @@ from typing import Any, Final
 
 from yarpy.log import logger
 from yarpy.peers.ros2.dds.discovery import Discovery
-from yarpy.peers.ros2.dds.library import delete
+from yarpy.peers.ros2.dds.library import delete, turn
 from yarpy.peers.ros2.dds.pump import Pump
 from yarpy.peers.ros2.dds.qos import promises_of
 from yarpy.peers.ros2.dds.raw import raw_class
@@ -125,8 +125,10 @@ class Participant:
     def endpoints(self, kind: str) -> Iterator[Any]:
         """Yield the writers of all programs, ours too, or with SUBSCRIBER their readers."""
         reader = self._published if kind == PUBLISHER else self._subscribed
-        reader.take(N=10_000, condition=self._gone[kind])  # the library keeps who has left
-        for sample in reader.read(N=10_000):
+        with turn:
+            reader.take(N=10_000, condition=self._gone[kind])  # the library keeps who has left
+            found = reader.read(N=10_000)
+        for sample in found:
             if sample.sample_info.instance_state == self._alive and hasattr(sample, "topic_name"):
                 yield sample
 
@@ -147,7 +149,9 @@ class Participant:
         return self.discovery.nodes({item.key for item in self._present()})
 
     def _present(self) -> Iterator[Any]:
-        for sample in self._participants.read(N=10_000):
+        with turn:
+            found = self._participants.read(N=10_000)
+        for sample in found:
             if sample.sample_info.instance_state == self._alive:
                 yield sample
 

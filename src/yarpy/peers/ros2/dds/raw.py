@@ -9,12 +9,15 @@ from __future__ import annotations
 from typing import Any
 
 from yarpy.peers.ros.message.model import ListOf, Primitive, Struct, Type
+from yarpy.peers.ros2.dds.library import turn
 from yarpy.peers.ros2.message.hash import dds_name
 
 
 def raw_class(struct: Struct, kind: str = "msg") -> Any:
     """The class for a message; with the kind `srv` for the request or response of a service."""
-    made = _dds_class(struct, kind)
+    with turn:
+        made = _dds_class(struct, kind)
+        made.__idl__.fill_type_data()  # else its first topic does, and in any thread
 
     def serialize(self: Any, *arguments: Any, **options: Any) -> bytes:
         body: bytes = self.body
@@ -26,7 +29,6 @@ def raw_class(struct: Struct, kind: str = "msg") -> Any:
         return found
 
     made.serialize, made.deserialize = serialize, classmethod(deserialize)
-    made.__idl__.fill_type_data()  # else its first topic does, and fails where two threads make one
     return made
 
 

@@ -10,7 +10,7 @@ import threading
 from collections.abc import Callable
 from typing import Any, Final
 
-from yarpy.peers.ros2.dds.library import load
+from yarpy.peers.ros2.dds.library import load, turn
 from yarpy.peers.ros2.dds.pump import Pump
 from yarpy.peers.ros2.token import PUBLISHER, Token
 
@@ -60,7 +60,8 @@ class Watch:
         return made
 
     def _take(self, reader: Any, kind: str) -> Callable[[], None] | None:
-        found = [item for item in reader.take(N=_BURST) if hasattr(item, "topic_name")]
+        with turn:
+            found = [item for item in reader.take(N=_BURST) if hasattr(item, "topic_name")]
         return (lambda: self._tell(found, kind)) if found else None
 
     def _tell(self, samples: list[Any], kind: str) -> None:
