@@ -42,7 +42,6 @@ def test_file_names(tmp_path: Path) -> None:
         ("::1 10000", Server("::1", 10000)),
         ("", None),
         ("  \n", None),
-        ("onlyhost", None),
         (
             "[name]\nhost 127.0.0.1\nport 21122\nmode yarp\n",
             Server("127.0.0.1", 21122),
@@ -51,8 +50,6 @@ def test_file_names(tmp_path: Path) -> None:
             '[other]\nhost wrong\n[ name ]\r\n# note\nhost "h"\r\nport 5 // why\r\n',
             Server("h", 5),
         ),
-        ("[name]\nport 5\n", None),
-        ("[name]\nhost\n", None),
     ],
 )
 def test_address_files(text: str, expected: Server | None) -> None:
@@ -62,9 +59,14 @@ def test_address_files(text: str, expected: Server | None) -> None:
 @pytest.mark.parametrize(
     ("text", "complaint"),
     [
+        ("onlyhost", 'only "onlyhost" is no address'),
+        ("[name]\nport 5\n", "without host"),
+        ("[name]\nhost\n", "without host"),
+        ("[name]\nhost h\n", '"" is no port'),
         ("h 1 carrot", 'mode "carrot"'),
-        ("h port", '"port" is no port .*yarpy conf'),
-        ("h 70000", '"70000" is no port .*yarpy conf'),
+        ("\x01\x02 \x03", r'"\'\\x03\'\.\.\." is no port'),
+        ("h port", '"port" is no port'),
+        ("h 70000", '"70000" is no port'),
         ("h 0 yarp", '"0" is no port'),
         ("[nome]\nhost h\nport 1", r"section \[name\]"),
         ("[", "name"),
@@ -74,8 +76,24 @@ def test_unusable_address_files(text: str, complaint: str, tmp_path: Path) -> No
     with pytest.raises(AddressError, match=complaint):
         parse_server(text)
     (tmp_path / "yarp.conf").write_text(text)
-    with pytest.raises(AddressError, match=r"yarp\.conf"):
+    with pytest.raises(
+        AddressError, match=r"yarp\.conf: .*; `yarpy conf HOST PORT` writes the file"
+    ):
         read_server(tmp_path)
+
+
+def test_who_writes_the_file_anew_goes_on(tmp_path: Path) -> None:
+    (tmp_path / "yarp.conf").write_text("hello")
+    with pytest.raises(AddressError, match=r"yarp\.conf: only \"hello\""):
+        configuration({}, tmp_path)
+    told: list[str] = []
+    found = configuration({}, tmp_path, told.append)
+    assert (found.servers, found.missing) == ((), ("/root",))
+    assert told == [
+        f'{tmp_path / "yarp.conf"}: only "hello" is no address of a name server, which is HOST PORT'
+    ]
+    with pytest.raises(AddressError):  # what the environment says, nobody writes anew
+        configuration({"YARPY_SERVER": ":"}, tmp_path, told.append)
 
 
 def test_write_and_clear(tmp_path: Path) -> None:

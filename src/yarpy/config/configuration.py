@@ -16,7 +16,7 @@ from __future__ import annotations
 
 import os
 import re
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -65,10 +65,27 @@ class Configuration:
         return self.missing[0] if self.missing else ROOT
 
 
-def configuration(environment: Mapping[str, str], directory: Path | None = None) -> Configuration:
+class BrokenFile(AddressError):
+    """An address file that holds no address; made of which file, and what is wrong."""
+
+    @property
+    def reason(self) -> str:
+        """Which file, and what is wrong, for who writes the file anew."""
+        return str(self.args[0])
+
+    def __str__(self) -> str:
+        return f"{self.reason}; `yarpy conf HOST PORT` writes the file anew"
+
+
+def configuration(
+    environment: Mapping[str, str],
+    directory: Path | None = None,
+    on_broken: Callable[[str], None] | None = None,
+) -> Configuration:
     """Everything the environment and the files in `directory` say about name servers.
 
-    Raises AddressError for an invalid address, naming its source.
+    Raises AddressError for an invalid address, naming its source. With `on_broken` a file that
+    holds none counts as not there, and `on_broken` is told which and why: for who writes it anew.
     """
     directory = conf_directory(environment) if directory is None else directory
     listed = environment.get("YARPY_SERVER", "").strip()
@@ -82,7 +99,13 @@ def configuration(environment: Mapping[str, str], directory: Path | None = None)
     found: list[Server] = []
     missing: list[str] = []
     for namespace in namespaces(environment, directory):
-        server = read_server(directory, namespace)
+        try:
+            server = read_server(directory, namespace)
+        except BrokenFile as error:
+            if on_broken is None:
+                raise
+            on_broken(error.reason)
+            server = None
         if server is None:
             missing.append(namespace)
         else:
@@ -140,12 +163,12 @@ def write_namespaces(directory: Path, names: Sequence[str]) -> Path:
 
 
 def read_server(directory: Path, namespace: str = ROOT) -> Server | None:
-    """The stored address of a namespace, or None. Raises AddressError for an unusable file."""
+    """The stored address of a namespace, or None. Raises BrokenFile for one without an address."""
     path = server_file(directory, namespace)
     try:
         server = parse_server(_read(path))
     except AddressError as error:
-        raise AddressError(f"{path}: {error}") from None
+        raise BrokenFile(f"{path}: {error}") from None
     if server is None:
         return None
     return Server(server.host, server.port, server.mode, namespace, path)
@@ -166,7 +189,9 @@ def clear_server(directory: Path, namespace: str = ROOT) -> Path:
 
 
 def parse_server(text: str) -> Server | None:
-    """The content of an address file: `HOST PORT [MODE]` or the ini form; None if it has none.
+    """The content of an address file: `HOST PORT [MODE]` or the ini form; None if it is empty.
+
+    Raises AddressError for what is no address.
 
     >>> parse_server("127.0.0.1 10000").mode
     'yarp'
@@ -175,22 +200,20 @@ def parse_server(text: str) -> Server | None:
         words = _parse_section(text)
     else:
         words = [word for word in re.split(r'[ \t\r\n"]+', text) if word]
-    if len(words) < 2 or not words[0]:
+    if not words:
         return None
+    if len(words) < 2 or not words[0]:
+        said = "a section [name] without host" if len(words) > 1 else f'only "{_shown(words[0])}"'
+        raise AddressError(f"{said} is no address of a name server, which is HOST PORT")
     mode = words[2] if len(words) > 2 and words[2] else YARP
     mode = YARP if mode == "//" else mode
     if mode not in (YARP, LOCAL) and mode not in names.names():
         known = ", ".join([YARP, LOCAL, *names.names()])
-        shown = mode if mode.isprintable() and len(mode) < 30 else f"{mode[:12]!a}..."
-        raise AddressError(
-            f'no mode "{shown}" of a name server: use one of {known}; `yarpy conf HOST PORT` '
-            "writes the file anew"
-        )
+        raise AddressError(f'no mode "{_shown(mode)}" of a name server: use one of {known}')
     number = _number(words[1])
     if mode == YARP and not number:
         raise AddressError(
-            f'"{words[1][:12]}" is no port of a name server, which is a number from 1 to 65535; '
-            "`yarpy conf HOST PORT` writes the file anew"
+            f'"{_shown(words[1])}" is no port of a name server, which is a number from 1 to 65535'
         )
     return Server(words[0], number, mode)
 
@@ -263,6 +286,11 @@ def _parse_section(text: str) -> list[str]:
     if not found:
         raise AddressError("an address file that begins with [ needs a section [name]")
     return [fields.get("host", ""), fields.get("port", ""), fields.get("mode", "")]
+
+
+def _shown(word: str) -> str:
+    """A word of a file as an error shows it: it may be any bytes."""
+    return word if word.isprintable() and len(word) < 30 else f"{word[:12]!a}..."
 
 
 def _number(text: str) -> int:

@@ -44,6 +44,15 @@ def test_by_multicast(found, here, tmp_path):
     assert here("where").code == 0
 
 
+def test_a_file_that_holds_no_address_is_written_anew(found, here, tmp_path):
+    path = Path(tmp_path, "config/yarp.conf")
+    path.parent.mkdir()
+    path.write_text("127.0.0.1 nine yarp\n", encoding="utf-8")
+    said = here("detect", "--write")
+    assert said.code == 0 and f'warning: {path}: "nine" is no port' in said.err
+    assert path.read_text(encoding="utf-8") == f"127.0.0.1 {found.port} yarp\n"
+
+
 def test_nobody(lone):
     said = lone.run("detect")
     assert said.returncode == 1

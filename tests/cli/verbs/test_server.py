@@ -102,6 +102,23 @@ def test_another_address_is_stored_only_when_asked(lone, port):
     assert conf(lone).read_text() == f"127.0.0.1 {port} yarp\n"
 
 
+@pytest.mark.parametrize("text", ["hello", "127.0.0.1 nine yarp", "\x01 \x02 \x03"])
+def test_an_address_file_that_holds_none(lone, port, text):
+    conf(lone).parent.mkdir(parents=True, exist_ok=True)
+    conf(lone).write_text(text)
+    words = ("server", "--ip", "127.0.0.1", "--socket", str(port))
+    said = lone.run(*words, "--read")
+    assert said.returncode == 1
+    assert f"error: {conf(lone)}: " in said.stderr
+    with socket.create_server(("", port)):
+        assert f"cannot listen on TCP port {port}" in lone.run(*words).stderr
+    assert conf(lone).read_text() == text
+    with lone.start(*words) as process:
+        process.wait_line(f"warning: {re.escape(str(conf(lone)))}: .* goes there", stream="err")
+        process.wait_line("Ready", stream="out")
+    assert conf(lone).read_text() == f"127.0.0.1 {port} yarp\n"
+
+
 def test_an_address_file_that_cannot_be_written(lone, port):
     Path(lone.environment["YARP_CONFIG_HOME"]).write_text(
         "a file where a directory should be", encoding="utf-8"

@@ -2,6 +2,7 @@
 
 from collections.abc import Iterator
 from math import degrees
+from pathlib import Path
 
 import pytest
 from support.ros_graph import RosGraph
@@ -16,7 +17,7 @@ from yarpy.kits.sim.body import Body
 from yarpy.kits.sim.joint import Joint
 from yarpy.kits.sim.robot import Parts, Robot, icub_head
 from yarpy.peers.ros.node import Node
-from yarpy.peers.ros.robot import SERVICE, RosRobot
+from yarpy.peers.ros.robot import SERVICE, RosGuest, RosRobot
 
 WATCHER = """
 import rospy
@@ -101,6 +102,16 @@ def test_rospy_moves_joints(graph: RosGraph, robot: Robot) -> None:
         mover.wait_line("^there$", timeout=2 * HANG)
         board = robot.parts.boards["head"]
         assert abs(board.encoders()[2] - degrees(0.5)) < 1
+
+
+def test_a_broken_address_file_is_no_master(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setenv("YARP_CONFIG_HOME", str(tmp_path))
+    for variable in ("YARP_CONF", "YARPY_SERVER", "YARP_NAMESPACE", "ROS_MASTER_URI"):
+        monkeypatch.delenv(variable, raising=False)
+    (tmp_path / "yarp.conf").write_text("127.0.0.1 nine yarp\n")
+    assert RosGuest().find(False) == ""
 
 
 def test_the_service_is_that_of_gazebo() -> None:

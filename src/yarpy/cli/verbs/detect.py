@@ -15,7 +15,7 @@ from typing import Any
 import click
 
 from yarpy.cli.output import print_line
-from yarpy.cli.stderr import complain
+from yarpy.cli.stderr import complain, warn
 from yarpy.cli.verbs.where import framed
 from yarpy.registry import names
 
@@ -36,7 +36,7 @@ def command(write: bool, **others: bool) -> int:
     from yarpy.names.default import client_of
     from yarpy.names.discovery import search
 
-    found = configuration(os.environ)
+    found = configuration(os.environ, on_broken=warn)
     for server in found.servers[:1]:
         print_line(f"Checking for name server at ip {server.host} port {server.port}")
         print_line("If there is a long delay, try:\n  yarpy conf --clean\n")
@@ -97,7 +97,7 @@ def _store(kind: str) -> int:
     from yarpy.config.configuration import Server, configuration, write_server
     from yarpy.names.default import default_client
 
-    found = configuration(os.environ)
+    found = configuration(os.environ, on_broken=warn)
     client: Any = default_client(Server("", 0, kind, found.namespace))
     where = client.place()
     print_line(f"Trying {client.title}, {where}")

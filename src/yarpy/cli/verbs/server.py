@@ -11,8 +11,9 @@
 
 Where it listens: what the options say; else the address that is stored for the namespace (or that
 YARPY_SERVER says), because that is where programs look; else an address of this computer and port
-10000 (YARP_PORT_RANGE). The address is stored when none was. When it differs from what is stored,
-the server does not start unless `--write` says that this is meant.
+10000 (YARP_PORT_RANGE). The address is stored when none was, also over a file that holds no
+address. When it differs from what is stored, the server does not start unless `--write` says that
+this is meant.
 
 Differs from C++: `--ip 127.0.0.1` and a stored loopback address are obeyed; the stored port number
 is used when `--socket` does not say another; SIGINT and SIGTERM end it in good order, with 0.
@@ -252,7 +253,7 @@ def command(
     log.show(level)
     if local:
         os.environ[SETTING] = "local"
-    found = configuration(os.environ)
+    found = configuration(os.environ, on_broken=None if read else _overwritten)
     decision = decide(found, ip=ip, socket=socket, read=read, write=write)
     if decision.note:
         warn(decision.note)
@@ -303,7 +304,7 @@ def _serve(
             beside=beside,
         )
     except AddressError as error:
-        raise _explained(server, error) from error
+        raise _explained(server, found, error) from error
     scribe = None
     try:
         say(f"IP address: {server.host}")
@@ -348,10 +349,13 @@ def _nothing(text: str) -> None:
     """Print nothing: `--silent`."""
 
 
-def _explained(server: Server, error: AddressError) -> AddressError:
-    """The name server that has the port number, if it is one."""
-    from yarpy.config.configuration import configuration
+def _overwritten(reason: str) -> None:
+    """Say what becomes of an address file that holds none."""
+    warn(f"{reason}: the address of this server goes there instead")
 
+
+def _explained(server: Server, found: Configuration, error: AddressError) -> AddressError:
+    """The name server that has the port number, if it is one."""
     try:
         with yarpy.YarpNameClient("127.0.0.1", server.port, timeout=1.0) as client:
             known = client.query(server.namespace)
@@ -360,7 +364,7 @@ def _explained(server: Server, error: AddressError) -> AddressError:
     if known is None:
         return error
     host, number = known.host, known.port
-    used = any((one.host, one.port) == (host, number) for one in configuration(os.environ).servers)
+    used = any((one.host, one.port) == (host, number) for one in found.servers)
     use = "programs use it" if used else f"`yarpy conf {host} {number}` lets programs use it"
     return AddressError(
         f"a name server for {known.name} is running here already, at {known.address}: {use}; for "
