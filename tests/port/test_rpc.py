@@ -530,6 +530,50 @@ def test_tell_sends_without_waiting_for_an_answer(names: LocalNames) -> None:
         client.tell([1])
 
 
+@pytest.mark.parametrize("asks", [True, False], ids=["call", "tell"])
+def test_what_never_left_goes_again_by_itself(
+    names: LocalNames, monkeypatch: pytest.MonkeyPatch, asks: bool
+) -> None:
+    """The connection ends behind the look at whether it has."""
+    heard: list[Message] = []
+    with (
+        RpcServer("/server", heard.append, names=names),
+        RpcClient("/server", names=names) as client,
+    ):
+        (link,) = client._hub.outputs.links
+        monkeypatch.setattr(link, "ended", lambda: False)
+        link.driver.transport.interrupt()
+        if asks:
+            assert client.call("x", timeout=HANG) == []
+        else:
+            client.tell(["x"], HANG)
+            assert client.call("y", timeout=HANG) == []
+        assert [message.value for message in heard] == [["x"], ["y"]][: 2 - asks]
+        assert client._hub.outputs.links != (link,)
+
+
+def test_what_may_have_left_is_not_told_again(
+    names: LocalNames, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    heard: list[Message] = []
+    with (
+        RpcServer("/server", heard.append, names=names),
+        RpcClient("/server", names=names) as client,
+    ):
+        (link,) = client._hub.outputs.links
+
+        def send(packet: object, until: float | None = None) -> bool:
+            link.driver.bytes_out += 1
+            link.sender.fail()
+            raise LinkClosed("it ends")
+
+        monkeypatch.setattr(link, "send", send)
+        with pytest.raises(LinkClosed, match="it ends"):
+            client.tell(["x"])
+        assert client.call("y") == []
+        assert [message.value for message in heard] == [["y"]]
+
+
 def test_a_handler_with_a_page_shows_it(names: LocalNames) -> None:
     class Handler:
         def __call__(self, message: Message) -> object:

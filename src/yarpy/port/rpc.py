@@ -259,9 +259,7 @@ class RpcClient(BasePort, Generic[T]):
                     call.wake = None
                     return reply
                 except LinkClosed as error:
-                    self._hub.outputs.drop(link, str(error))
-                    scope.check()
-                    left = driver.bytes_out != before or link.carrier.spelling == "object"
+                    left = self._left(link, before, error)
                     if left or again:
                         raise _lost(link.route.target, left) from error
                 except YarpError as error:
@@ -274,7 +272,8 @@ class RpcClient(BasePort, Generic[T]):
             self._turn.release()
 
     def tell(self, statement: object, timeout: float | None = None) -> None:
-        """Send it without waiting for an answer; errors as of `call`."""
+        """Send it without waiting for an answer; errors as of `call`. What never left is sent again
+        by itself, too."""
         self._check_open()
         seconds = self._timeout if timeout is None else timeout
         self._hub.life.calls.run(seconds, self._tell, Packet(statement))
@@ -282,14 +281,26 @@ class RpcClient(BasePort, Generic[T]):
     def _tell(self, call: Scope, packet: Packet) -> None:
         self._take_turn()
         try:
-            link = self._link()
-            try:
-                link.send(packet, call.until)
-            except LinkClosed as error:
-                self._hub.outputs.drop(link, str(error))
-                raise
+            again = False
+            while True:
+                link = self._link()
+                before = link.driver.bytes_out
+                try:
+                    link.send(packet, call.until)
+                    return
+                except LinkClosed as error:
+                    if self._left(link, before, error) or again:
+                        raise
+                again = True
         finally:
             self._turn.release()
+
+    def _left(self, link: Outbound, before: int, error: LinkClosed) -> bool:
+        """Leave a connection that has ended under a message; return whether a part of that may have
+        left: `before`, so many bytes had. Raises what ends the call."""
+        self._hub.outputs.drop(link, str(error))
+        scope.check()
+        return link.driver.bytes_out != before or link.carrier.spelling == "object"
 
     def _take_turn(self) -> None:
         """One question at a time: one that did not answer in time ends the connection, and those

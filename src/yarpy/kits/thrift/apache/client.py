@@ -19,7 +19,7 @@ from yarpy.errors import (
 )
 from yarpy.kits.thrift.apache import encode
 from yarpy.kits.thrift.apache.decode import READERS, fields
-from yarpy.kits.thrift.apache.message import Asked, HungUp, Returned, fault_of
+from yarpy.kits.thrift.apache.message import Asked, Returned, fault_of
 from yarpy.kits.thrift.apache.protocol import (
     CALL,
     EXCEPTION,
@@ -107,10 +107,7 @@ class Sync(_Client):
         asked = question(self._thrift, method, values)
         try:
             if method.oneway:
-                try:
-                    return self._port.tell(asked)
-                except HungUp:  # a question is asked again by itself
-                    return self._port.tell(asked)
+                return self._port.tell(asked)
             return result(method, self._port.ask(asked, self.timeout))
         except YarpError as error:
             said = self._told(method, error)
@@ -134,10 +131,7 @@ class Async(_Client):
         asked = question(self._thrift, method, values)
         try:
             if method.oneway:
-                try:
-                    return await self._port.tell(asked)
-                except HungUp:  # a question is asked again by itself
-                    return await self._port.tell(asked)
+                return await self._port.tell(asked)
             return result(method, await self._port.ask(asked, self.timeout))
         except YarpError as error:
             said = self._told(method, error)

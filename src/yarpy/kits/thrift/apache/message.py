@@ -4,7 +4,6 @@
     Asked     a call to make
     Answer    what is answered to a Call, or NOTHING
     Returned  an answer that has come
-    HungUp    why a call has not left: the server ends the connection with each answer
 
 Rules: bytes in the spelling of the connection, `binary` or `compact`; who has the service reads
 them. To loggers a call is what it would be on YARP's wire, once a service has taken it.
@@ -17,7 +16,7 @@ from typing import Any, Final
 
 from yarpy.data import codec
 from yarpy.data.value import Buffer
-from yarpy.errors import DecodeError, LinkClosed
+from yarpy.errors import DecodeError
 from yarpy.kits.thrift.apache.decode import READERS
 from yarpy.kits.thrift.apache.encode import WRITERS
 from yarpy.kits.thrift.apache.protocol import (
@@ -116,10 +115,6 @@ def whole(thrift: str, head: Head, answer: Answer) -> bytes:
 def refusal_of(value: object) -> str:
     """Return why a port that has no service refuses a call, as the end of a text."""
     return f": {value.why}" if isinstance(value, Refused) else ""
-
-
-class HungUp(LinkClosed):
-    """The server has ended the connection after its last answer; nothing has left since."""
 
 
 class Asked:

@@ -4,7 +4,7 @@
     thrift+http+compact+path.camera://HOST:9090   TCompactProtocol, at /camera
 
 Rules: h11 checks every byte that comes. A body is one message, without a frame. A server that ends
-the connection with its answer, as THttpServer does, is dialled anew for the next call: `HungUp`,
+the connection with its answer, as THttpServer does, is dialled anew for the next call,
 before anything of that has left. Of the response to a oneway call only the status is waited for,
 and what is wrong with it is logged: its caller is not there any more.
 """
@@ -18,7 +18,7 @@ import h11
 from yarpy.errors import DecodeError, LinkClosed, LocalProtocolError, RemoteProtocolError
 from yarpy.kits.thrift.apache.asking import Asking
 from yarpy.kits.thrift.apache.body import KIND
-from yarpy.kits.thrift.apache.message import HungUp, spelling_of
+from yarpy.kits.thrift.apache.message import spelling_of
 from yarpy.kits.thrift.apache.scan import Scan
 from yarpy.limit import HTTP_HEAD
 from yarpy.log import logger, readable
@@ -48,7 +48,7 @@ class Post(Asking):
 
     def encode(self, stream: ByteStream, packet: Packet) -> None:
         if self._over:
-            raise HungUp("the server has ended the connection after its last answer")
+            raise LinkClosed("the server has ended the connection after its last answer")
         super().encode(stream, packet)
 
     def _send(self, stream: ByteStream, data: bytes) -> None:
