@@ -38,6 +38,8 @@ OVER_TCP: Final[tuple[str, ...]] = ("tls", "peer_timeout.SECONDS")
 #: ... and what is understood wherever it makes sense, and refused elsewhere with its reason
 _ANYWHERE: Final = frozenset(("tls", "log", "peer_timeout"))
 
+_ACK_SIZE: Final = len(framing.ACK)
+
 PAGE = "page"  # what follows the port command `*` when a browser asks
 ASKS_FOR_KEY = "perhaps it wants a key (auth.conf) or TLS, which this side does not have"
 
@@ -292,10 +294,15 @@ class Indexed(Carrier):
     parse_reply = staticmethod(framing.parse_reply)
 
     def parse_acks(self, stream: ByteStream, most: int) -> int:
-        count = min(most, (stream.tail - stream.head) // len(framing.ACK))
-        if not count or not stream.buffer.startswith(framing.ACK * count, stream.head):
+        head = stream.head
+        count = (stream.tail - head) // _ACK_SIZE
+        if count > most:
+            count = most
+        if not count or not stream.buffer.startswith(
+            framing.ACK if count == 1 else framing.ACK * count, head
+        ):
             return 0  # not all are plain acknowledgements: read them one by one
-        stream.head += count * len(framing.ACK)
+        stream.head = head + count * _ACK_SIZE
         return count
 
     def greet(self, stream: ByteStream) -> Steps[None]:

@@ -122,7 +122,6 @@ def read_small(
     size = len(buffer)
     if size < 8:
         raise Truncated(f"a Bottle takes at least 8 bytes, here are {size}", 8)
-    items = make_list()
     try:
         code, count = _read_pair(buffer)
         planned = code == LIST and 0 < count <= _PLANNED
@@ -131,8 +130,8 @@ def read_small(
             if plan is not None:
                 parts = plan.unpack_from(buffer)
                 if parts[::2] == plan.tags:
-                    items.extend(parts[1::2])
-                    return items, plan.end
+                    return make_list(parts[1::2]), plan.end
+        items = make_list()
         kind = code & UNIT_MASK
         end = _read_items(buffer, 8, kind, count, 0, items, None, make_list, make_dict, keep)
     except struct_error:

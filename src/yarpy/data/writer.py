@@ -8,7 +8,7 @@ packing plan for every combination of element types that came up lately.
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
-from functools import lru_cache, partial
+from functools import partial
 from struct import Struct
 from struct import error as struct_error
 from typing import Any, Final, TypeAlias
@@ -42,8 +42,11 @@ from yarpy.data.value import (
     Vocab,
 )
 
-#: Lists up to this long have a plan for their combination of types.
+#: Lists up to this long have a plan for their combination of types; so many are remembered.
 _PLANNED: Final = 24
+_PLANS: Final = 512
+_UNPLANNED: Final[Any] = object()
+_plans: Final[dict[tuple[type, ...], Callable[[Sequence[Any]], bytes] | None]] = {}
 
 #: The payload of an element; in pieces if something big is inside.
 _Payload: TypeAlias = bytes | list[bytes | memoryview]
@@ -59,18 +62,24 @@ def list_blocks(
 ) -> Blocks:
     """The message of a list: TypeError for an element that no tag stands for. `otherwise` makes it
     where there is no short way: that is for numbers and words alone."""
-    if isinstance(items, Packed):
-        packed = items.packed_blocks()
-        if packed is not None:
-            return packed
-    kinds = tuple(map(type, items))
-    plan = _plan(kinds) if len(kinds) <= _PLANNED else _long_plan(kinds)
+    bare = items
+    if type(items) is not list and type(items) is not tuple:
+        if isinstance(items, Packed):
+            packed = items.packed_blocks()
+            if packed is not None:
+                return packed
+        else:
+            bare = items[:]  # which the interpreter looks into faster than into a class of its own
+    kinds = tuple(map(type, bare))
+    plan = _plans.get(kinds, _UNPLANNED)
+    if plan is _UNPLANNED:
+        plan = _plan(kinds) if len(kinds) <= _PLANNED else _long_plan(kinds)
     if plan is not None:
         try:
             if type(plan) is not _NumberPlan:
-                return (plan(items),)
+                return (plan(bare),)
             arguments = plan.head[:]  # as in its __call__
-            arguments[plan.start :: plan.step] = items
+            arguments[plan.where] = bare
             return (plan.pack(*arguments),)
         except struct_error:
             pass  # an int beyond 32 bits
@@ -121,12 +130,19 @@ def _through_text(value: Any) -> Any:
 # ---------------------------------------------------------------------------------- short ways
 
 
-@lru_cache(maxsize=512)
 def _plan(kinds: tuple[type, ...]) -> Callable[[Sequence[Any]], bytes] | None:
-    """A packer for lists of elements of these types; None if there is no short way.
+    """A packer for lists of elements of these types, which is remembered; None if there is no
+    short way.
 
     It raises struct.error for an int beyond 32 bits, which no longer has the tag of its type.
     """
+    if len(_plans) >= _PLANS:
+        _plans.clear()
+    plan = _plans[kinds] = _new_plan(kinds)
+    return plan
+
+
+def _new_plan(kinds: tuple[type, ...]) -> Callable[[Sequence[Any]], bytes] | None:
     tags = [_TAGS.get(kind, 0) for kind in kinds]
     if not all(tags):
         return None
@@ -158,17 +174,16 @@ def _plan(kinds: tuple[type, ...]) -> Callable[[Sequence[Any]], bytes] | None:
 class _NumberPlan:
     """A packer for lists of numbers: `head` with the numbers from `start` on, `step` apart."""
 
-    __slots__ = ("head", "pack", "start", "step")
+    __slots__ = ("head", "pack", "where")
 
     def __init__(self, pack: Callable[..., bytes], head: list[int], start: int, step: int) -> None:
         self.pack = pack
         self.head: list[Any] = head
-        self.start = start
-        self.step = step
+        self.where = slice(start, None, step)
 
     def __call__(self, items: Sequence[Any]) -> bytes:
         arguments = self.head[:]
-        arguments[self.start :: self.step] = items
+        arguments[self.where] = items
         return self.pack(*arguments)
 
 
@@ -310,7 +325,9 @@ def _list(items: Sequence[Any], depth: int) -> tuple[int, _Payload]:
             head = packed[0]
             return LIST + items.tag, [head[4:], *packed[1:]]
     kinds = tuple(map(type, items))
-    plan = _plan(kinds) if len(kinds) <= _PLANNED and depth <= MAX_DEPTH else None
+    plan = _plans.get(kinds, _UNPLANNED) if depth <= MAX_DEPTH else None
+    if plan is _UNPLANNED:
+        plan = _plan(kinds) if len(kinds) <= _PLANNED else None
     if plan is not None:
         try:
             message = plan(items)

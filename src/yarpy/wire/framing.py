@@ -63,6 +63,7 @@ _KEYS: Final = {key: b"\0\0\0\0~" + key.encode() + b"\0\1" for key in "Dda"}
 _HEADS: Final = {
     key: (_PLAIN + _INT.pack(8), b"\0\0\0\0" + command) for key, command in _KEYS.items()
 }
+_START: Final = struct.Struct(f"<{len(_PLAIN) + 4}si12s")  # with the payload's length in between
 _TEXT: Final = b"~\0\0\1"  # behind the length of a port command that is a text
 QUIT: Final = INDEX + b"\x01\x01" + _FILLER + _TWO.pack(10, 0) + b"\2\0\0\0~\0\0\1q\0"
 
@@ -101,7 +102,7 @@ def encode(packet: Packet) -> list[Buffer]:
                 start = _PLAIN + _THREE.pack(len(command), len(payload), 0) + command
             else:
                 head, command = _HEADS[packet.key]
-                start = head + _INT.pack(len(payload)) + command
+                start = _START.pack(head, len(payload), command)
             framed = [start + payload] if len(payload) < LARGE else [start, payload]
         else:
             framed = _encode_blocks(encode_command(packet.key, packet.envelope), blocks)
