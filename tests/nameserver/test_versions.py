@@ -10,6 +10,7 @@ from support.wait import HANG, wait_until
 from support.yarp4 import administer_as_yarp4
 
 import yarpy
+from yarpy import facts
 from yarpy.contact import Contact
 from yarpy.nameserver import versions
 from yarpy.nameserver.local import LocalNames
@@ -105,7 +106,9 @@ def test_the_name_server_knows_it(monkeypatch: pytest.MonkeyPatch) -> None:
         assert server.client.get("/other", spelling.PROPERTY) == []  # it may be another one
 
 
-def test_ports_of_yarpy_are_not_asked(monkeypatch: pytest.MonkeyPatch) -> None:
+@pytest.mark.parametrize("system", ["linux", "darwin", "win32"])
+def test_ports_of_yarpy_are_not_asked(monkeypatch: pytest.MonkeyPatch, system: str) -> None:
+    monkeypatch.setattr(facts, "SYSTEM", (system, "nt" if system == "win32" else "posix"))
     asked: list[Contact] = []
     monkeypatch.setattr(Versions, "ask", lambda self, contact: asked.append(contact))
     with NameServer() as server:

@@ -36,7 +36,7 @@ from yarpy.nameserver.right import is_old_style, needed
 from yarpy.nameserver.store import NameStore
 from yarpy.nameserver.survey import is_port
 from yarpy.nameserver.topology import Action, Topology
-from yarpy.nameserver.versions import Versions
+from yarpy.nameserver.versions import OURS, Versions
 from yarpy.port.answer.spelling import PROPERTY, YARP4
 from yarpy.port.assembly import open_hub
 from yarpy.port.connect import identity, probe
@@ -267,7 +267,7 @@ class Serving:
     def _introduced(self, contact: Contact) -> None:
         """A port says that it is there."""
         accepts = self.service.store.values(contact.name, "accepts") or ()
-        if is_port(contact) and MEMORY not in accepts:  # which those of yarpy take
+        if is_port(contact) and OURS not in accepts:
             self._versions.ask(contact)
 
     def _is_of_yarp4(self, contact: Contact) -> None:

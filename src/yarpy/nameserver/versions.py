@@ -18,6 +18,7 @@ from yarpy.errors import YarpError
 from yarpy.names.default import secret
 from yarpy.port.connect import probe
 
+OURS: Final = "tls"  # a carrier that each port of yarpy takes on every system, and none of C++
 MOST: Final = 64  # ports that wait to be asked
 PAUSES: Final = (0.002, 0.005, 0.02, 0.1, 0.3)  # seconds until a port that registers listens
 TIMEOUT: Final = 0.5  # seconds for an answer
