@@ -29,6 +29,7 @@ from yarpy.log import logger
 from yarpy.names.base import NameClient
 from yarpy.network.asking import ask_server
 from yarpy.network.remote import connect
+from yarpy.platform.waiting import happens
 from yarpy.port.port import BufferedPort
 from yarpy.wire.message import Message
 
@@ -68,7 +69,7 @@ class SystemClock:
 
     def wait(self, event: threading.Event, seconds: float) -> bool:
         """Wait until `event` is set or so many seconds have passed; return whether it is set."""
-        return event.wait(max(0.0, seconds))
+        return happens(event, seconds)
 
 
 class NetworkClock:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import signal
 import sys
+import threading
 import time
 from _thread import allocate_lock
 
@@ -67,3 +68,34 @@ def test_an_exception_at_any_place_of_it_comes_out_as_it_is() -> None:
         act = lambda: waiting.wait(0.01)  # noqa: E731
         there = cut_at(number, act, "threading.py", "platform/waiting.py")
     assert number > 3
+
+
+def test_an_event_happens_or_the_time_is_over() -> None:
+    event = threading.Event()
+    assert not waiting.happens(event, -1.0)
+    began = time.monotonic()
+    assert not waiting.happens(event, 3 * waiting.SLICE)
+    assert time.monotonic() >= began + 2.9 * waiting.SLICE
+    thread = inside("happens", event.set)
+    assert waiting.happens(event, HANG)
+    assert waiting.happens(event, -1.0)
+    thread.join()
+
+
+@pytest.mark.parametrize("number", ["SIGINT", "SIGTERM", "SIGBREAK"])
+def test_the_handler_of_a_signal_may_set_an_event(number: str) -> None:
+    """As that of a module does, in a thread."""
+    if not hasattr(signal, number):
+        pytest.skip(f"{sys.platform} has no {number}")
+    event = threading.Event()
+
+    def asked(*_: object) -> None:
+        threading.Thread(target=event.set).start()
+
+    before = signal.signal(getattr(signal, number), asked)
+    thread = inside("happens", lambda: _wake_main_thread(getattr(signal, number)))
+    try:
+        assert waiting.happens(event, HANG)
+    finally:
+        thread.join()
+        signal.signal(getattr(signal, number), before)

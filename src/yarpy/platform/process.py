@@ -14,8 +14,8 @@ import sys
 from typing import Final
 
 if sys.platform == "win32":
-    #: what no program can refuse
-    KILL: Final = signal.SIGTERM
+    #: what no program can refuse: any number but those of Ctrl-C and Ctrl-Break
+    KILL: Final = 9
 
     _QUERY: Final = 0x1000  # PROCESS_QUERY_LIMITED_INFORMATION
     _DENIED: Final = 5  # ERROR_ACCESS_DENIED

@@ -10,6 +10,7 @@ Rules: only for waits in which a main thread may be; no other one hears of signa
 from __future__ import annotations
 
 import sys
+import threading
 import time
 from _thread import LockType, allocate_lock
 from typing import Final
@@ -37,3 +38,14 @@ def wait(seconds: float | None = None) -> None:
     lock = allocate_lock()
     lock.acquire()
     acquire(lock, None if seconds is None else time.monotonic() + seconds)
+
+
+def happens(event: threading.Event, seconds: float) -> bool:
+    """Return whether an event is set within so many seconds, as soon as it is."""
+    until = time.monotonic() + seconds
+    while True:
+        left = until - time.monotonic()
+        if event.wait(max(0.0, min(left, _MOST))):
+            return True
+        if left <= _MOST:
+            return False

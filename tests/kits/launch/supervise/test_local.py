@@ -15,10 +15,10 @@ from yarpy.kits.launch.supervise import process
 from yarpy.kits.launch.supervise.local import LocalHandle, LocalRunner
 from yarpy.kits.launch.supervise.runner import Program, Runner
 from yarpy.limit import OUTPUT_LINE
+from yarpy.platform.process import lives
 
-pytestmark = pytest.mark.skipif(not process.known(), reason="this system has no /proc to look at")
-
-
+#: for what has words of a shell, or is looked at in /proc
+PROC = pytest.mark.skipif(not process.known(), reason="this system has no /proc to look at")
 NUMBERS = itertools.count()
 
 
@@ -52,6 +52,12 @@ class Started:
         return process.members({self.handle.pid: self.mark}, {self.mark})
 
 
+def runs(pid: int) -> bool:
+    """Return whether a process is there; a zombie, whose new parent does not ask for it, is not."""
+    found = process.look(pid) if process.known() else None
+    return lives(pid) if found is None else found.alive
+
+
 @pytest.fixture
 def runner() -> Iterator[LocalRunner]:
     yield LocalRunner(grace=0.3)
@@ -70,6 +76,7 @@ def test_it_is_a_runner(runner: LocalRunner) -> None:
     assert checked is runner
 
 
+@PROC
 def test_output_and_code(runner: LocalRunner, tmp_path) -> None:
     started = shell(
         runner,
@@ -81,11 +88,13 @@ def test_output_and_code(runner: LocalRunner, tmp_path) -> None:
     assert started.lines == [str(tmp_path), "b c", "end"]
 
 
+@PROC
 def test_one_that_dies_in_its_first_millisecond(runner: LocalRunner) -> None:
     started = [Started(runner, "/bin/false") for _ in range(20)]
     assert [one.wait() for one in started] == [1] * 20
 
 
+@PROC
 @pytest.mark.parametrize(
     ("command", "workdir"), [("/no/such/program", ""), ("/etc/hostname", ""), ("true", "/no/such")]
 )
@@ -105,6 +114,7 @@ def test_whatever_cannot_be_started_is_named(
         Started(runner, "slep", "600")
 
 
+@PROC
 def test_the_number_of_a_signal_is_the_code(runner: LocalRunner) -> None:
     started = Started(runner, "sleep", "600")
     assert started.handle.returncode is None and started.handle.state == "running"
@@ -114,6 +124,7 @@ def test_the_number_of_a_signal_is_the_code(runner: LocalRunner) -> None:
     started.handle.terminate()  # it is over: nobody gets a signal
 
 
+@PROC
 def test_one_that_ignores_sigterm_is_killed(runner: LocalRunner) -> None:
     started = shell(runner, "trap '' TERM INT; echo ready; while :; do sleep 0.05; done")
     wait_until(lambda: started.lines == ["ready"])
@@ -122,6 +133,7 @@ def test_one_that_ignores_sigterm_is_killed(runner: LocalRunner) -> None:
     assert started.left() == {}
 
 
+@PROC
 def test_one_that_is_stopped_is_killed(runner: LocalRunner) -> None:
     started = Started(runner, "sleep", "600")
     started.handle.terminate(signal.SIGSTOP)
@@ -129,6 +141,7 @@ def test_one_that_is_stopped_is_killed(runner: LocalRunner) -> None:
     assert started.wait() in (-signal.SIGKILL, -signal.SIGTERM)
 
 
+@PROC
 def test_children_end_with_it(runner: LocalRunner) -> None:
     started = shell(runner, "sleep 600 & sleep 600 & echo ready; wait")
     wait_until(lambda: started.lines == ["ready"])
@@ -151,6 +164,7 @@ os._exit(0)
 """
 
 
+@PROC
 def test_what_it_leaves_behind_ends_too(runner: LocalRunner) -> None:
     """A daemon: two forks, a session of its own, deaf to SIGTERM, and it holds the output open."""
     started = python(runner, DAEMON)
@@ -159,6 +173,7 @@ def test_what_it_leaves_behind_ends_too(runner: LocalRunner) -> None:
     assert started.left() == {}
 
 
+@PROC
 def test_another_name_and_no_environment_hide_nobody(runner: LocalRunner) -> None:
     code = "exec env -i /bin/sh -c 'exec sleep 600' & exec sleep 600"
     started = shell(runner, code)
@@ -168,6 +183,7 @@ def test_another_name_and_no_environment_hide_nobody(runner: LocalRunner) -> Non
     assert started.left() == {}
 
 
+@PROC
 def test_a_flood_without_a_newline(runner: LocalRunner) -> None:
     """As many bytes as one likes: what is kept is a line of the longest that is allowed."""
     size = 64 << 20
@@ -176,3 +192,23 @@ def test_a_flood_without_a_newline(runner: LocalRunner) -> None:
     flood, last = started.lines
     assert last == "last" and len(flood) < OUTPUT_LINE + 100
     assert flood.endswith(f" ... and {size - OUTPUT_LINE} bytes more")
+
+
+PARENT = """
+import subprocess, sys, time
+child = subprocess.Popen([sys.executable, "-c", "import time; time.sleep(600)"])
+print(child.pid, flush=True)
+time.sleep(600 * int(sys.argv[1]))
+"""
+
+
+@pytest.mark.parametrize("waits", [True, False])
+def test_nobody_whom_it_started_is_left(runner: LocalRunner, waits: bool) -> None:
+    """On each system: asked to end, and ending by itself."""
+    started = Started(runner, sys.executable, "-c", PARENT, str(int(waits)))
+    wait_until(lambda: started.lines)
+    if waits:
+        started.handle.terminate()
+    assert (started.wait() == 0) == (not waits)
+    assert waits or started.handle.left_behind == 1
+    assert started.handle.remaining == [] and not runs(int(started.lines[0]))

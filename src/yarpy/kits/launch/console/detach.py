@@ -19,7 +19,8 @@ from yarpy.kits.launch.console import control
 _POLL: Final = 0.02  # seconds
 _TIMEOUT: Final = 120.0  # seconds until it can be reached
 _SAID: Final = 2000  # letters of what it said that are told
-_ALONE: Final = getattr(subprocess, "DETACHED_PROCESS", 0)  # on Windows: without our console
+#: on Windows: with a console of its own that has no window; in it programs can be asked to end
+_ALONE: Final = getattr(subprocess, "CREATE_NO_WINDOW", 0)
 
 
 def detach(name: str, words: Sequence[str], timeout: float = _TIMEOUT) -> Path:

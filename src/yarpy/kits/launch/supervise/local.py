@@ -1,9 +1,11 @@
-"""Programs on this computer, each in a session of its own.
+"""Programs on this computer, each in a session of its own, on Windows in a job.
 
 Rules: what a program leaves behind ends with it: once its first process has ended, the others get
 SIGTERM, and after `grace` seconds SIGKILL. A program that does not end when it is asked to gets
-SIGKILL after the same time. Its output is read to the end, however much it is. Two threads serve
-one program and sleep while nothing happens: one for its output, one for its end.
+SIGKILL after the same time. On Windows Ctrl-Break asks, TerminateJobObject is SIGKILL, and the end
+of this process, however it comes, is that of all programs. Its output is read to the end, however
+much it is. Two threads serve one program and sleep while nothing happens: one for its output, one
+for its end.
 """
 
 from __future__ import annotations
@@ -19,7 +21,8 @@ from typing import Final
 from yarpy.kits.launch.supervise import process
 from yarpy.kits.launch.supervise.line import Lines
 from yarpy.kits.launch.supervise.runner import Program
-from yarpy.platform.process import KILL, signal_group, signal_one
+from yarpy.platform.group import START, Group
+from yarpy.platform.process import KILL, signal_one
 
 GRACE: Final = 5.0  # seconds from SIGTERM to SIGKILL
 _LAST_WORDS: Final = 1.0  # seconds for output that was written before the end
@@ -60,13 +63,14 @@ class LocalRunner:
                 stdout=subprocess.PIPE,
                 stderr=subprocess.STDOUT,
                 bufsize=0,
-                start_new_session=True,
+                **START,
             )
+            group = _grouped(child)
         except OSError as error:
             if error.filename is None:  # Windows does not tell of what it speaks
                 error.filename = program.command[0]
             raise
-        return LocalHandle(child, mark, self.grace, self._scanner, on_line, on_end)
+        return LocalHandle(child, group, mark, self.grace, self._scanner, on_line, on_end)
 
 
 class LocalHandle:
@@ -75,6 +79,7 @@ class LocalHandle:
     def __init__(
         self,
         child: subprocess.Popen[bytes],
+        group: Group,
         mark: str,
         grace: float,
         scanner: process.Scanner,
@@ -82,6 +87,7 @@ class LocalHandle:
         on_end: Callable[[int], None],
     ) -> None:
         self._child = child
+        self._group = group
         self._mark = mark
         self._grace = grace
         self._scanner = scanner
@@ -123,9 +129,9 @@ class LocalHandle:
         to end; nothing if it has ended."""
         if self._ended.is_set():
             return
-        signal_group(self.pid, number)
+        self._group.signal(number)
         if number in (signal.SIGTERM, signal.SIGINT) and self._timer is None:
-            timer = threading.Timer(self._grace, signal_group, (self.pid, KILL))
+            timer = threading.Timer(self._grace, self._group.signal, (KILL,))
             timer.daemon = True
             timer.name = f"yarpy grace {self._mark}"
             self._timer = timer
@@ -176,8 +182,8 @@ class LocalHandle:
         until = time.monotonic() + self._grace
         number = int(signal.SIGTERM)
         while left:
-            for pid in left:
-                signal_one(pid, number)
+            if number:
+                self._send(left, number)
             passed = time.monotonic() - until
             if passed > _UNKILLABLE:
                 break  # another user's by now, or asleep in the system
@@ -190,4 +196,20 @@ class LocalHandle:
         if process.known():
             sessions = {self.pid: self._mark}
             return [*process.members(sessions, {self._mark}, self._scanner.scan)]
-        return [-self.pid] if signal_group(self.pid, 0) else []  # all of the group
+        return self._group.members()
+
+    def _send(self, pids: list[int], number: int) -> None:
+        if process.known():
+            for pid in pids:
+                signal_one(pid, number)
+        else:
+            self._group.signal(number)
+
+
+def _grouped(child: subprocess.Popen[bytes]) -> Group:
+    """Return the group of a program that has just been started. Raises OSError."""
+    try:
+        return Group(child.pid)
+    except OSError:
+        with child:  # it has ended
+            raise
