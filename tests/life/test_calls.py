@@ -4,6 +4,7 @@ connections `yarpy.connect` makes."""
 from __future__ import annotations
 
 import socket
+import sys
 import threading
 import time
 
@@ -251,12 +252,13 @@ def test_wait_for_inputs_ends_with_its_port(names: yarpy.LocalNames) -> None:
 
 
 def test_connecting_two_ports_takes_three_connections(monkeypatch: pytest.MonkeyPatch) -> None:
-    mine, here, real = [], threading.get_ident(), socket.socket.connect
+    way = "connect_ex" if sys.platform == "win32" else "connect"
+    mine, here, real = [], threading.get_ident(), getattr(socket.socket, way)
 
-    def connect(self: socket.socket, address: tuple[str, int]) -> None:
+    def connect(self: socket.socket, address: tuple[str, int]) -> int | None:
         if threading.get_ident() == here:  # those of the ports, and of what looks after them, apart
             mine.append(address[1])
-        real(self, address)
+        return real(self, address)
 
     with (
         yarpy.NameServer() as server,
@@ -265,6 +267,6 @@ def test_connecting_two_ports_takes_three_connections(monkeypatch: pytest.Monkey
     ):
         host, _, number = server.address.rpartition(":")
         with YarpNameClient(host, int(number)) as client:
-            monkeypatch.setattr(socket.socket, "connect", connect)
+            monkeypatch.setattr(socket.socket, way, connect)
             yarpy.connect("/a", "/b", names=client)
         assert sorted(mine) == sorted((int(number), a.contact.port, b.contact.port))

@@ -18,6 +18,7 @@ from yarpy.config.access import FILE, Access, Rule
 from yarpy.config.access_file import parse
 from yarpy.errors import AddressError
 from yarpy.link.begin.admission import KNOWN, RUN, SCRIPT
+from yarpy.platform.file_place import replace
 from yarpy.platform.refusal import reason
 
 _HEAD: Final = re.compile(r"\s*+\[")
@@ -136,7 +137,7 @@ def _write(where: Path, text: str) -> None:
             file.write(text)
             file.flush()
             os.fsync(file.fileno())
-        draft.replace(target)
+        replace(draft, target)
     except OSError as error:
         with suppress(OSError):
             draft.unlink()

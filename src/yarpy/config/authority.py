@@ -16,6 +16,7 @@ from pathlib import Path
 from typing import Any, Final
 
 from yarpy.errors import LocalProtocolError
+from yarpy.platform.file_place import replace
 
 YEARS: Final = 10  # of an authority
 DAYS: Final = 825  # of a certificate, the most that browsers take
@@ -146,4 +147,4 @@ def _write(file: Path, data: bytes, mode: int) -> None:
     fresh.unlink(missing_ok=True)
     with open(os.open(fresh, os.O_WRONLY | os.O_CREAT | os.O_EXCL, mode), "wb") as out:
         out.write(data)
-    fresh.replace(file)
+    replace(fresh, file)

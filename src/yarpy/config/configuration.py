@@ -21,6 +21,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from yarpy.errors import AddressError
+from yarpy.platform.file_place import replace
 from yarpy.platform.folders import conf_directory
 from yarpy.registry import names
 
@@ -313,7 +314,7 @@ def _write(path: Path, text: str) -> None:
     draft = path.with_name(f"{path.name}.{os.getpid()}.tmp")
     try:
         draft.write_text(text, "utf-8", "surrogateescape", newline="\n")
-        draft.replace(path)
+        replace(draft, path)
     except OSError as error:
         draft.unlink(missing_ok=True)
         error.filename = str(path)  # a full disk does not say which file

@@ -19,6 +19,8 @@ from contextlib import suppress
 from pathlib import Path
 from typing import Final
 
+from yarpy.platform import file_place
+
 LOOPBACK: Final = "127.0.0.1"
 _WORD: Final = 32  # letters
 _GREETING: Final = 2.0  # seconds that one may take to say it
@@ -34,7 +36,7 @@ class LoopbackListener:
         self._socket = socket.create_server((LOOPBACK, 0), backlog=16)
         draft = path.with_suffix(".new")
         draft.write_text(f"{self._socket.getsockname()[1]} {self._word}", "utf-8")
-        draft.replace(path)
+        file_place.replace(draft, path)
 
     def accept(self) -> socket.socket:
         """Return the next connection. Raises OSError once we are closed."""
@@ -50,7 +52,7 @@ class LoopbackListener:
 
     def close(self) -> None:
         """Take the file away and end; whoever waits in `accept` is woken."""
-        self._path.unlink(missing_ok=True)
+        file_place.remove(self._path)
         self._closed = True
         with suppress(OSError):  # closing alone wakes nobody everywhere
             socket.create_connection(self._socket.getsockname(), _GREETING).close()

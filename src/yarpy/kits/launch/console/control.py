@@ -21,6 +21,7 @@ from yarpy.kits.launch.supervise import process
 from yarpy.limit import CONTROL_LINE, CONTROL_REPLY
 from yarpy.platform import local_socket
 from yarpy.platform.file_lock import hold
+from yarpy.platform.file_place import remove
 from yarpy.platform.user import user
 from yarpy.transports.unix import runtime_directory
 
@@ -129,7 +130,7 @@ class Record:
         if away:
             self.write("", [], away)
         else:
-            self._path.unlink(missing_ok=True)
+            remove(self._path)
         self.leave()
 
     def leave(self) -> None:
