@@ -4,11 +4,12 @@ from __future__ import annotations
 
 import socket
 
+import pytest
 from support.wait import HANG, wait_until
 
 from yarpy.nameserver.local import LocalNames
 from yarpy.port.connect import disconnecting
-from yarpy.port.port import Port
+from yarpy.port.port import BufferedPort, Port
 
 
 def test_connectionless_goodbye_reaches_the_receiver(names: LocalNames) -> None:
@@ -47,3 +48,18 @@ def test_inputs_are_removed_on_request(names: LocalNames) -> None:
             assert sock.recv(100) == b"Welcome visitor\r\n"
             assert sock.recv(100) == b""
             sock.close()
+
+
+@pytest.mark.parametrize("carrier", ["http", "websocket", "text", "fast_tcp"])
+def test_a_reader_that_had_all_and_went_first_is_no_warning(
+    names: LocalNames, carrier: str, caplog: pytest.LogCaptureFixture
+) -> None:
+    with BufferedPort("/in", names=names, strict=True) as reader:
+        with Port("/out", names=names) as out:
+            out.connect("/in", carrier)
+            for number in range(5):
+                out.write([number])
+            for number in range(5):
+                assert reader.read(timeout=HANG).value == [number]
+            reader.close()
+        assert "may have arrived" not in caplog.text

@@ -65,6 +65,7 @@ class Outbound:
         self.tos = 0
         self.asked = NOTHING_ASKED  # priorities, granted or not
         self.log = carrier.route.spec.log is not None  # gets what the port receives, not writes
+        self.left = False  # the reader had hung up in good order when we ended the connection
         self.active = True  # of the multicast links of a port only one sends
         self.wanted: Qos | None = None  # when messages should come
         self.limit: float | None = None  # seconds after which a message is not sent any more
@@ -347,6 +348,7 @@ class Outbound:
                 self.carrier.acks
                 or not (self.carrier.delivery.connectionless or driver.transport.ended())
             )
+            before = driver.bytes_out
             if quit_ and known:
                 try:
                     known = self._say_goodbye(by)
@@ -355,6 +357,7 @@ class Outbound:
             if quit_ and known:
                 sender.end()
             else:
+                self.left = hold.held and self._has_left(before)
                 driver.transport.interrupt()
                 sender.give_up(at_rest=hold.held)
         finally:
@@ -396,6 +399,15 @@ class Outbound:
             driver.run(driver.stream.skip(sys.maxsize), by)
         taken = transport.taken(driver.bytes_out, driver.bytes_in)
         return taken is not None and taken[1] and taken[0] >= driver.bytes_out
+
+    def _has_left(self, before: int) -> bool:
+        """Return whether the peer had hung up by itself when it had taken all `before` our goodbye,
+        in bytes, as far as the system can tell."""
+        sender, driver = self.sender, self.driver
+        if sender.gathered or sender.halfway or not driver.transport.ended():
+            return False
+        taken = driver.transport.taken(driver.bytes_out, driver.bytes_in)
+        return taken is None or (taken[1] and taken[0] >= before)
 
     def snapshot(self) -> dict[str, Any]:
         """Return counters as plain numbers."""

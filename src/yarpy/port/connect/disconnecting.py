@@ -56,6 +56,8 @@ def _close_output(hub: Hub, link: Outbound) -> None:
     lost, unsure = counter.drops - drops, counter.unconfirmed - unconfirmed
     if link.carrier.delivery.connectionless:
         unsure = 0  # a reader that is closing answers nobody who asks how many datagrams came
+    elif link.left:
+        unsure = 0  # a reader that goes by itself wants no more, such as a page that is closed
     if (lost or unsure) and not (link.log or link.carrier.delivery.lossy):
         log.warning(
             "%s: %s did not take all that was written before the connection was closed: %d "
