@@ -111,6 +111,50 @@ def test_what_is_no_list_is_shown_by_what_it_is(cli, writer):
     assert "cannot be printed" not in process.stderr
 
 
+def test_a_point_cloud(cli, writer):
+    cloud = yarpy.PointCloud(np.arange(6.0).reshape(1, 2, 3))
+    with cli.start("read", "/read/p", "/read/writer") as process:
+        assert writer.wait_for_outputs(timeout=HANG)
+        writer.write(cloud)
+        process.wait_line("^<pointcloud xyz 2x1, 2 points>$", stream="out")
+    with cli.start("read", "--json", "/read/p", "/read/writer", "once") as process:
+        assert writer.wait_for_outputs(timeout=HANG)
+        writer.write(cloud)
+        assert process.wait(HANG) == 0
+    assert json.loads(process.stdout)["value"] == {
+        "type": "pointcloud",
+        "kind": "xyz",
+        "width": 2,
+        "height": 1,
+        "points": [[0.0, 1.0, 2.0], [3.0, 4.0, 5.0]],
+    }
+    assert "cannot be printed" not in process.stderr
+
+
+def test_what_python_alone_has_is_shown_without_its_description(cli, writer):
+    sent = [
+        [1, None],
+        {"t": (1, 2.5)},
+        2.5 - 1j,
+        np.array([[1, 2], [3, 4]]),
+        np.zeros((3, 7), "i8"),
+        {"a": np.array([1, 2], "u1"), "s": yarpy.Sound([3])},
+    ]
+    with cli.start("read", "/read/d", "/read/writer") as process:
+        assert writer.wait_for_outputs(timeout=HANG)
+        for value in sent:
+            writer.write(value)
+        process.wait_line("sound", stream="out")
+    assert process.stdout.splitlines() == [
+        "1 ()",
+        "(t (1 2.5))",
+        "(2.5 -1.0)",
+        "((1 2) (3 4))",
+        "<array int64 3x7>",
+        '(a (1 2)) (s "<sound 16000 Hz, 1 channel, 1 samples>")',
+    ]
+
+
 def test_json_of_what_python_alone_has(cli, writer):
     sent = [
         yarpy.Sound([1, 2], 8000),

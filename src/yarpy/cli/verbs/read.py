@@ -1,13 +1,13 @@
 """`yarpy read PORT [REMOTE...] [envelope] [trim [N]] [once]`: print what arrives at a port.
 
 Prints each message as a line of Bottle text. An integer and a string are a line that somebody sent
-verbatim: only the string is printed, and the integer 1 ends the reader. Of an image the kind and
-the size are printed, of a sound how long it is; `--json` prints all of it, and what a program in
-Python said of its types (`yarpy.type`) is then no element, but obeyed.
+verbatim: only the string is printed, and the integer 1 ends the reader. Of images, sounds, point
+clouds and arrays the kind and the size are printed; `--json` prints all of it. What a program in
+Python said of its types (`yarpy.type`) is no element, but obeyed.
 
-Differs from C++: an image is not printed byte by byte, and a sound is printed; a port that cannot
-be opened is exit code 1, not 0; standard output holds the messages and nothing else, log lines go
-to standard error.
+Differs from C++: an image is not printed byte by byte, and sounds and point clouds are printed; a
+port that cannot be opened is exit code 1, not 0; standard output holds the messages and nothing
+else, log lines go to standard error.
 Exit codes: 0 also after ^C; 1 the port cannot be opened.
 """
 
@@ -22,9 +22,9 @@ import click
 import yarpy
 from yarpy.cli.output import print_json, print_line
 from yarpy.cli.ports import ANY, hear_from, open_port
+from yarpy.cli.shown import cloud_of, is_described, summary, text_of
 from yarpy.cli.signals import Interrupted
 from yarpy.cli.stderr import complain
-from yarpy.data.python.description import KEY
 
 TRIM = 80
 
@@ -66,20 +66,27 @@ class Printer:
     def show(self, message: yarpy.Message) -> bool:
         """Print `message`; False when it says that there will be no more."""
 
-        value = message.value
+        value = _value(message)
         if isinstance(value, yarpy.Sound):  # which is no list
-            self._print(message, value, _length(value))
+            self._print(message, value, summary(value))
             return True
-        bottle = message.as_(yarpy.Bottle)
+        try:
+            bottle = message.as_(yarpy.Bottle)
+        except yarpy.DecodeError:
+            cloud = cloud_of(message)
+            if cloud is None:
+                raise
+            self._print(message, cloud, summary(cloud))
+            return True
         verbatim = len(bottle) == 2 and type(bottle[0]) is int and type(bottle[1]) is str
         if verbatim and bottle[0] == 1:
             return False
         if verbatim:
             self._print(message, bottle[1], bottle[1])
         elif self._json:
-            self._print(message, value if _is_described(bottle) else bottle, "")
+            self._print(message, value if is_described(bottle) else bottle, "")
         else:
-            self._print(message, bottle, _summary(message) or bottle.to_text())
+            self._print(message, bottle, text_of(message, bottle))
         return True
 
     def _print(self, message: yarpy.Message, value: Any, line: str) -> None:
@@ -104,23 +111,12 @@ class Printer:
                 return
 
 
-def _length(sound: yarpy.Sound) -> str:
-    of = "1 channel" if sound.channels == 1 else f"{sound.channels} channels"
-    return f"<sound {sound.frequency} Hz, {of}, {sound.length} samples>"
-
-
-def _is_described(bottle: yarpy.Bottle) -> bool:
-    """Return whether a program in Python has said of which of its types the elements are."""
-    last = bottle[-1] if bottle else None
-    return isinstance(last, list) and last[:1] == [KEY]
-
-
-def _summary(message: yarpy.Message) -> str:
-    """Return the format and size of an image; "" for what can be read as text."""
-    value = message.value
-    if not isinstance(value, yarpy.Image):
-        return ""
-    return f"<image {value.code} {value.width}x{value.height}, {len(message.payload)} bytes>"
+def _value(message: yarpy.Message) -> Any:
+    """Return what the message says that it is; None if it is no Bottle."""
+    try:
+        return message.value
+    except yarpy.DecodeError:
+        return None
 
 
 @click.command()
