@@ -12,6 +12,7 @@ from dataclasses import dataclass, fields
 from typing import Any, Final, Self
 
 SYSTEM: Final = (sys.platform, os.name)  # what this one is called
+_TITLES: Final = {"win32": "Windows", "darwin": "macOS", "linux": "Linux"}
 MAGIC_SIZE: Final = 8  # bytes that identify the protocol of a connection
 
 
@@ -133,7 +134,8 @@ class TransportRow(Row):
     hosts, where none was named. `no_tls`: why there is no TLS on it. `proves`: a peer's address is
     its own, not what it says. `meets`: of a connection over it the two ends can meet elsewhere.
     `stays`: what it carries does not leave the computer. `datagrams`: it carries these, which may
-    be lost. `system`: the `sys.platform` or `os.name` that has it; "": each.
+    be lost. `system`: the `sys.platform` or `os.name` that has it; "": each. `uses`: what of that
+    system it uses.
     """
 
     hosts: str = ""
@@ -146,11 +148,19 @@ class TransportRow(Row):
     stays: bool = False
     datagrams: bool = False
     system: str = ""
+    uses: str = ""
 
     @property
     def here(self) -> bool:
         """Return whether this system has it."""
         return not self.system or self.system in SYSTEM
+
+    @property
+    def lacks(self) -> str:
+        """Return why this system has not got it, "" if it has."""
+        if self.here:
+            return ""
+        return f"not on {_TITLES.get(SYSTEM[0], SYSTEM[0])}: it needs {self.uses}"
 
     @classmethod
     def of(cls, name: str, plugin: Any) -> Self:

@@ -145,8 +145,13 @@ class CarrierRegistry(Registry[CarrierRow]):
     def offered(self) -> list[str]:
         """Return the names of the carriers of which this system has the transport, and of those of
         other packages."""
-        rows = {name: TRANSPORTS.get(row.over or "tcp") for name, row in self._shipped.items()}
-        return [name for name in self.names() if (row := rows.get(name)) is None or row.here]
+        return [name for name in self.names() if not self.lacks(name)]
+
+    def lacks(self, name: str) -> str:
+        """Return why this system has not got the transport of a carrier, "" if it has."""
+        row = self._shipped.get(name)
+        transport = None if row is None else TRANSPORTS.get(row.over or "tcp")
+        return "" if transport is None else transport.lacks
 
     def subprotocol(self, offered: Iterable[str]) -> str | None:
         """Return the name of the carrier that may come in a WebSocket with one of these

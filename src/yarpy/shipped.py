@@ -135,6 +135,10 @@ _NO_TLS: Final = (
     "but there is no TLS through them: take tcp"
 )
 
+_SOCKETS: Final = "Unix sockets in Python"
+_MEMFD: Final = "memory without a name (memfd)"
+_SYSV: Final = "System V memory of Linux"
+_NEAR: Final[Any] = {"meets": False, "stays": True}
 _MPI: Final[Any] = {"title": "MPI", "setting": "YARPY_MPI", "meets": False}
 
 TRANSPORTS: Final[Mapping[str, TransportRow]] = _table(
@@ -142,12 +146,10 @@ TRANSPORTS: Final[Mapping[str, TransportRow]] = _table(
     TransportRow("tls", f"{_MOVES}.tls:Tls"),
     TransportRow("udp", f"{_MOVES}.datagram:Udp", meets=False, datagrams=True),
     TransportRow("mcast", f"{_MOVES}.datagram:Mcast", meets=False, datagrams=True),
-    TransportRow("unix", f"{_MOVES}.unix:Unix", meets=False, stays=True, system="posix"),
-    TransportRow("inproc", f"{_MOVES}.inproc:Inproc", meets=False, stays=True),
-    TransportRow(
-        "memory", f"{_MOVES}.shared.memory:Memory", meets=False, stays=True, system="linux"
-    ),
-    TransportRow("shmem", f"{_MOVES}.shared.shmem:Shmem", meets=False, stays=True, system="linux"),
+    TransportRow("unix", f"{_MOVES}.unix:Unix", system="posix", uses=_SOCKETS, **_NEAR),
+    TransportRow("inproc", f"{_MOVES}.inproc:Inproc", **_NEAR),
+    TransportRow("memory", f"{_MOVES}.shared.memory:Memory", system="linux", uses=_MEMFD, **_NEAR),
+    TransportRow("shmem", f"{_MOVES}.shared.shmem:Shmem", system="linux", uses=_SYSV, **_NEAR),
     TransportRow("mpi", f"{_PEERS}.mpi.bcast:MpiOpener", "mpi", **_MPI),
     TransportRow("bcast", f"{_PEERS}.mpi.bcast:BcastOpener", "mpi", **_MPI),
     TransportRow("ros2", f"{_PEERS}.ros2.medium:Ros2Opener", "ros2", meets=False, proves=False),

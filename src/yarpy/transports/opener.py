@@ -47,6 +47,7 @@ class Opener:
     stays: ClassVar[bool] = False
     datagrams: ClassVar[bool] = False
     system: ClassVar[str] = ""
+    uses: ClassVar[str] = ""
 
     @classmethod
     def dial(cls, contact: Contact, timeout: float, route: Route | None = None) -> Transport:

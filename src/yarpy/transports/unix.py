@@ -174,6 +174,7 @@ class Unix(Opener):
     meets = False
     stays = True
     system = "posix"
+    uses = "Unix sockets in Python"
 
     @classmethod
     def meet(cls, place: Elsewhere) -> Transport:

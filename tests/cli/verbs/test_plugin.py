@@ -5,7 +5,7 @@ from importlib.metadata import EntryPoint
 
 import pytest
 
-from yarpy import registry
+from yarpy import facts, registry
 
 
 def test_list(cli):
@@ -46,7 +46,7 @@ def test_one_that_does_not_load(here, monkeypatch):
 
 def test_json(here):
     found = [json.loads(line) for line in here("plugin", "--json").out.splitlines()]
-    assert {"kind": "carrier", "name": "udp", "home": "core", "needs": ""} in found
+    assert {"kind": "carrier", "name": "udp", "home": "core", "needs": "", "lacks": ""} in found
     assert len(found) > 30
 
 
@@ -66,3 +66,41 @@ def test_the_list_loads_nothing(here, monkeypatch):
         registry.Registry, "load", lambda self, name: pytest.fail(f"{name} was loaded")
     )
     assert "transport   mpi" in here("plugin").out
+
+
+SYSTEMS = {
+    "linux": ("posix", {}),
+    "darwin": (
+        "posix",
+        {
+            "memory": "not on macOS: it needs memory without a name (memfd)",
+            "shmem": "not on macOS: it needs System V memory of Linux",
+        },
+    ),
+    "win32": (
+        "nt",
+        {
+            "unix_stream": "not on Windows: it needs Unix sockets in Python",
+            "memory": "not on Windows: it needs memory without a name (memfd)",
+            "shmem": "not on Windows: it needs System V memory of Linux",
+        },
+    ),
+}
+
+
+@pytest.mark.parametrize("system", SYSTEMS)
+def test_what_a_system_has_not_got_is_told(here, monkeypatch, system: str):
+    name, lacks = SYSTEMS[system]
+    monkeypatch.setattr(facts, "SYSTEM", (system, name))
+    lines = [line for line in here("plugin").out.splitlines() if " not on " in line]
+    told = {line.split()[1]: line.split(maxsplit=2)[2] for line in lines if "carrier " in line}
+    assert told == lacks
+    assert len(lines) == 2 * len(lacks)  # and the transports
+    found = [json.loads(line) for line in here("plugin", "--json").out.splitlines()]
+    assert {one["name"]: one["lacks"] for one in found if one["kind"] == "carrier"} == {
+        **dict.fromkeys(registry.carriers.names(), ""),
+        **lacks,
+    }
+    one = here("plugin", "memory").out
+    assert one.startswith("Yes, memory is a carrier")
+    assert ("* here:   not on" in one) == ("memory" in lacks)

@@ -2,8 +2,9 @@
 and commands that are installed.
 
 Without NAME lists them, one per line (`--list`: names only), with what installs what they need:
-first the core, then each peer, each kit, and other packages; nothing is loaded. With NAME tells
-what it is and whether it loads. Exit codes: 0; 1 there is no such plug-in, or it does not load.
+first the core, then each peer, each kit, and other packages, and says what this system has not got
+for one; nothing is loaded. With NAME tells what it is and whether it loads. Exit codes: 0; 1 there
+is no such plug-in, or it does not load.
 """
 
 from __future__ import annotations
@@ -14,7 +15,8 @@ import click
 
 from yarpy.cli.output import print_all_json, print_line
 from yarpy.cli.stderr import complain
-from yarpy.registry import Registry
+from yarpy.facts import Row, TransportRow
+from yarpy.registry import CarrierRegistry, Registry
 
 
 @click.command()
@@ -38,22 +40,27 @@ def command(name: str | None, names_only: bool, as_json: bool) -> int:
             print_line(f"{home}:")
             for entry in found:
                 if entry.home == home:
-                    line = f"  {entry.kind:<12}{entry.name:<30}{entry.needs}"
+                    more = entry.needs or entry.lacks
+                    line = f"  {entry.kind:<12}{entry.name:<30}{more}"
                     print_line(line.rstrip())
     else:
         for entry in found:
             describe(entry.kind, name)
+            if entry.lacks:
+                print_line(f"  * here:   {entry.lacks}")
     return 0
 
 
 class Installed(NamedTuple):
     """A plug-in. `home`: `core`, a peer or a kit of yarpy, or the distribution that brings it.
-    `needs`: what to type so that it can be loaded, "" where yarpy alone is enough."""
+    `needs`: what to type so that it can be loaded, "" where yarpy alone is enough. `lacks`: why it
+    is of no use on this system, "" if it is."""
 
     kind: str
     name: str
     home: str
     needs: str = ""
+    lacks: str = ""
 
 
 def installed() -> list[Installed]:
@@ -87,7 +94,14 @@ def _installed(plugins: Registry[Any], name: str) -> Installed:
     row, kind = plugins.row(name), plugins.kind.removesuffix("s")
     if row is None or not row.home:
         return Installed(kind, name, plugins.owner(name) or "added by hand")
-    return Installed(kind, name, row.home, row.advice if row.extra else "")
+    needs = row.advice if row.extra else ""
+    return Installed(kind, name, row.home, needs, _lacks(plugins, name, row))
+
+
+def _lacks(plugins: Registry[Any], name: str, row: Row) -> str:
+    if isinstance(plugins, CarrierRegistry):
+        return plugins.lacks(name)
+    return row.lacks if isinstance(row, TransportRow) else ""
 
 
 def describe(kind: str, name: str) -> None:

@@ -319,6 +319,7 @@ class Memory(Opener):
     meets = False
     stays = True
     system = "linux"
+    uses = "memory without a name (memfd)"
 
     @classmethod
     def meet(cls, place: Elsewhere) -> Transport | None:

@@ -261,6 +261,7 @@ class Shmem(Opener):
     meets = False
     stays = True
     system = "linux"
+    uses = "System V memory of Linux"
 
     @classmethod
     def meet(cls, place: Elsewhere) -> Transport:
