@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import logging
 import re
+import threading
 from contextlib import suppress
 from pathlib import Path
 
@@ -11,7 +12,7 @@ import pytest
 from support.moments import cut, elsewhere, moments
 
 import yarpy.log
-from yarpy.log import BURST, MINUTE, logger, readable
+from yarpy.log import BURST, MINUTE, log_failure, logger, readable
 
 SOURCE = Path(__file__).parents[1] / "src" / "yarpy"
 
@@ -145,3 +146,16 @@ def test_no_signal_handler_leaves_a_handler_of_the_log_locked() -> None:
         log.removeHandler(handler)
         log.setLevel(logging.NOTSET)
     assert tried > 10
+
+
+def test_what_a_function_of_the_program_raises(caplog: pytest.LogCaptureFixture) -> None:
+    log = logger("yarpy.test")
+    log_failure(log, ZeroDivisionError("oh"), "%s: it failed", "/here")
+    with pytest.raises(SystemExit):  # in the main thread the program ends
+        log_failure(log, SystemExit(3), "%s: it failed", "/here")
+    ended = threading.Thread(target=log_failure, args=(log, SystemExit(3), "%s: it failed", "/in"))
+    ended.start()
+    ended.join()
+    assert [bool(record.exc_info) for record in caplog.records] == [True, False]
+    assert caplog.messages[0] == "/here: it failed"
+    assert caplog.messages[1].startswith("/in: it failed: sys.exit() in a thread of a port ends no")

@@ -31,6 +31,24 @@ _WARNING: Final = 30  # of logging, which is imported late
 _SHORT: Final = {"\n": "\\n", "\r": "\\r", "\t": "\\t"}
 
 
+def log_failure(log: logging.Logger, error: BaseException, text: str, *args: object) -> None:
+    """Log that a function of the program has raised `error`, in the words of `text`: with its
+    traceback, or, if it called sys.exit(), with what becomes of that. In the main thread that goes
+    on."""
+    if not isinstance(error, SystemExit):
+        log.error(text, *args, exc_info=error)
+        return
+    import threading
+
+    if threading.current_thread() is threading.main_thread():
+        raise error
+    log.error(
+        f"{text}: sys.exit() in a thread of a port ends no program; let the main thread end it, "
+        "which may wait for an Event that is set here",
+        *args,
+    )
+
+
 def logger(name: str) -> logging.Logger:
     """The logger of that name. What it logs is `readable`, and limited."""
     import logging  # late: `readable` alone does not need it

@@ -331,6 +331,17 @@ def test_failing_callback_is_logged_and_counted(
         assert "/here" in caplog.records[0].getMessage()
 
 
+def test_a_callback_that_exits_is_told_so(caplog: pytest.LogCaptureFixture) -> None:
+    box, link = Callback(lambda message: sys.exit(3)), Link()
+    thread = threading.Thread(target=put, args=(box, link, 1))
+    thread.start()
+    thread.join(HANG)
+    assert link.counter.drops == 1
+    [record] = caplog.records
+    assert (record.levelno, record.exc_info) == (logging.ERROR, None)
+    assert "sys.exit() in a thread of a port ends no program" in record.getMessage()
+
+
 def test_locked_callback_is_called_one_at_a_time() -> None:
     inside: list[int] = []
     most: list[int] = []

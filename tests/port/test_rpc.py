@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import socket
+import sys
 import threading
 import time
 from urllib.request import urlopen
@@ -256,6 +257,20 @@ def test_slow_server_is_a_timeout_and_its_late_answer_is_lost(names: LocalNames)
         with pytest.raises(Timeout, match=r'"/server" did not reply within 0\.0\d s'):
             client.call("slow", timeout=0.05)
         assert client.call("quick", timeout=HANG) == ["quick"]
+
+
+def test_a_handler_that_exits_answers_and_goes_on(
+    names: LocalNames, caplog: pytest.LogCaptureFixture
+) -> None:
+    def handle(message: Message) -> object:
+        return sys.exit("enough") if message.value == ["exit"] else "alive"
+
+    with RpcServer("/s", handle, names=names), RpcClient("/s", names=names) as client:
+        with pytest.raises(RemoteError, match="SystemExit: enough"):
+            client.call("exit", timeout=HANG)
+        assert client.call("x", timeout=HANG) == "alive"
+    assert "sys.exit() in a thread of a port ends no program" in caplog.text
+    assert "defect" not in caplog.text
 
 
 def test_a_stuck_handler_keeps_nobody_waiting(

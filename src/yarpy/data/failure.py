@@ -27,7 +27,7 @@ def raised(kind: str, text: str) -> Bottle:
     return Bottle([Vocab("fail"), f"{kind}: {text}", mark(kind)])
 
 
-def answer_of(error: Exception) -> Bottle:
+def answer_of(error: BaseException) -> Bottle:
     """Return the answer of a server whose handler has raised `error`. That of a server which the
     handler has asked in turn goes on as it is."""
     if isinstance(error, RemoteError) and error.type:

@@ -18,7 +18,8 @@ from typing import Any, ClassVar, Final, TypeAlias
 
 from yarpy.errors import PortClosed, YarpError
 from yarpy.link.receive.inbound import Inbound
-from yarpy.log import logger
+from yarpy.log import log_failure, logger
+from yarpy.monitors.base import FAILURES
 from yarpy.platform.timed_queue import TimedQueue
 from yarpy.scope import Waiter
 from yarpy.wire.message import Message
@@ -464,9 +465,9 @@ class Callback(Mailbox):
         except YarpError as error:
             link.failure = str(error)
             log.warning("%s: message from %s: %s", link.owner.name, link.route.source, error)
-        except Exception as error:
+        except FAILURES as error:
             link.failure = f"{type(error).__name__}: {error}"
-            log.exception("%s: the callback failed on %r", link.owner.name, message)
+            log_failure(log, error, "%s: the callback failed on %r", link.owner.name, message)
         with self._gate:
             self._drop(link)
 

@@ -20,7 +20,8 @@ from yarpy.errors import (
 )
 from yarpy.link.ending import NEVER
 from yarpy.link.send.outbound import Outbound
-from yarpy.log import logger
+from yarpy.log import log_failure, logger
+from yarpy.monitors.base import FAILURES
 from yarpy.names.node_name import CLIENT, SERVER
 from yarpy.port.assembly import open_hub
 from yarpy.port.base import BasePort
@@ -104,8 +105,8 @@ class RpcServer(BasePort):
             log.warning("%s: message from %s: %s", self.name, message.source, error)
             reply = refusal = Malformed(str(error))
             refusal.append(mark(type(error).__name__))
-        except Exception as error:
-            log.exception("%s: the handler failed on %r", self.name, message)
+        except FAILURES as error:
+            log_failure(log, error, "%s: the handler failed on %r", self.name, message)
             reply = answer_of(error)
         answer = Bottle() if reply is None else reply
         if self._hub.outputs.links:

@@ -19,7 +19,8 @@ from yarpy.carriers.web.http.page import Page, Pages
 from yarpy.data.bottle import Bottle
 from yarpy.link.receive.inbound import Inbound
 from yarpy.link.send.outbound import Outbound
-from yarpy.log import logger
+from yarpy.log import log_failure, logger
+from yarpy.monitors.base import FAILURES
 from yarpy.port.connection import ConnectionEvent
 from yarpy.port.deadline import DeadlineEvent, Watch
 from yarpy.port.keep.registration import Registration
@@ -106,8 +107,8 @@ class Callbacks:
         try:
             with outside():
                 callback(event)
-        except Exception:
-            log.exception("%s: the connection callback failed", self._registration.name)
+        except FAILURES as error:
+            log_failure(log, error, "%s: the connection callback failed", self._registration.name)
 
     def deadline(self, link: Inbound, lateness: float, silent: bool) -> None:
         """Tell the program that a deadline was missed."""
@@ -118,8 +119,8 @@ class Callbacks:
         event = DeadlineEvent(route.source, route.target, route.carrier, lateness, missed, silent)
         try:
             callback(event)
-        except Exception:
-            log.exception("%s: the deadline callback failed", self._registration.name)
+        except FAILURES as error:
+            log_failure(log, error, "%s: the deadline callback failed", self._registration.name)
 
     def close(self) -> None:
         """The port closes."""
@@ -134,6 +135,6 @@ class Callbacks:
         try:
             found = callback(path, fields)
             return Page(found) if isinstance(found, str) else found
-        except Exception:
-            log.exception("%s: the page %s failed", self._registration.name, path)
+        except FAILURES as error:
+            log_failure(log, error, "%s: the page %s failed", self._registration.name, path)
             return Page("the program of this port fails on this page\n", "text/plain", 500)
