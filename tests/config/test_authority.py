@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import errno
 import os
 import subprocess
 from pathlib import Path
@@ -47,6 +48,25 @@ def test_openssl_accepts_it(tmp_path: Path) -> None:
             "-CAfile", str(its / "ca.pem"), str(its / "cert.pem")]  # fmt: skip
     done = subprocess.run(line, capture_output=True, text=True, check=False)
     assert done.returncode == 0, done.stderr
+
+
+def test_a_full_disk_is_told_with_the_file_and_changes_nothing(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    make(tmp_path, ["localhost"])
+    before = {file.name: file.read_bytes() for file in tmp_path.iterdir()}
+    opened = os.open
+
+    def full(path: Path, *rest: int) -> int:
+        if path.name == ".cert.pem.new":
+            raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC))
+        return opened(path, *rest)
+
+    monkeypatch.setattr("yarpy.config.authority.os.open", full)
+    with pytest.raises(OSError) as told:
+        make(tmp_path, ["localhost"])
+    assert told.value.filename == str(tmp_path / "cert.pem")
+    assert {file.name: file.read_bytes() for file in tmp_path.iterdir()} == before
 
 
 def test_mistakes(tmp_path: Path) -> None:

@@ -48,10 +48,13 @@ def make(directory: Path, names: Sequence[str], authority: Path | None = None) -
         .add_extension(x509.AuthorityKeyIdentifier.from_issuer_public_key(key.public_key()), False)
         .sign(key, hashes.SHA256())
     )
-    _write(directory / "key.pem", _private(own), 0o600)
-    _write(directory / "cert.pem", _public(certificate), 0o644)
+    files = {
+        directory / "key.pem": (_private(own), 0o600),
+        directory / "cert.pem": (_public(certificate), 0o644),
+    }
     if directory != where:
-        _write(directory / "ca.pem", _public(issuer), 0o644)
+        files[directory / "ca.pem"] = (_public(issuer), 0o644)
+    _write(files)
     return fresh
 
 
@@ -87,8 +90,7 @@ def _authority(where: Path) -> tuple[Any, Any, bool]:
         )
         .sign(key, hashes.SHA256())
     )
-    _write(key_file, _private(key), 0o600)
-    _write(file, _public(certificate), 0o644)
+    _write({key_file: (_private(key), 0o600), file: (_public(certificate), 0o644)})
     return key, certificate, True
 
 
@@ -141,10 +143,20 @@ def _public(certificate: Any) -> bytes:
     return found
 
 
-def _write(file: Path, data: bytes, mode: int) -> None:
-    """Write it atomically; others cannot read it even for a moment."""
-    fresh = file.with_name(f".{file.name}.new")
-    fresh.unlink(missing_ok=True)
-    with open(os.open(fresh, os.O_WRONLY | os.O_CREAT | os.O_EXCL, mode), "wb") as out:
-        out.write(data)
-    replace(fresh, file)
+def _write(files: dict[Path, tuple[bytes, int]]) -> None:
+    """Write contents with their modes; others cannot read them even for a moment. Where there is no
+    room for all, none is there: a key without its certificate is of no use. Raises OSError."""
+    drafts = {file: file.with_name(f".{file.name}.new") for file in files}
+    try:
+        for file, draft in drafts.items():
+            data, mode = files[file]
+            draft.unlink(missing_ok=True)
+            with open(os.open(draft, os.O_WRONLY | os.O_CREAT | os.O_EXCL, mode), "wb") as out:
+                out.write(data)
+        for file, draft in drafts.items():
+            replace(draft, file)
+    except OSError as error:
+        error.filename = str(file)  # a full disk does not say which file
+        for draft in drafts.values():
+            draft.unlink(missing_ok=True)
+        raise
