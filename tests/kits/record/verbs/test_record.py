@@ -72,11 +72,26 @@ def test_json(cli, out) -> None:
         assert found.attachments() == {"walk.xml": b"<application/>"}
 
 
-def test_a_duration(cli, server) -> None:
+def test_a_duration_in_which_nothing_comes(cli, server) -> None:
     with cli.start("record", "/none", "--duration", "0.1", "-o", "y") as process:
-        assert process.wait() == 0
+        assert process.wait() == 1
         assert "its page is at http://" in process.stderr
+        assert "error: nothing was recorded: /none was not there (" in process.stderr
     assert values(cli.home / "y.mcap") == []
+    with cli.start("record", "-e", "none", "--duration", "0.1", "-o", "z") as process:
+        assert process.wait() == 1
+        assert "error: nothing was recorded: no wanted port sent" in process.stderr
+
+
+def test_a_port_of_which_nothing_comes(cli, out, names) -> None:
+    with cli.start("record", "/out", "/none", "/still", "-o", "y") as process:
+        with yarpy.Port("/still", names=names) as still:
+            assert out.wait_for_outputs(timeout=HANG) and still.wait_for_outputs(timeout=HANG)
+            out.write([1], wait=True)
+            process.signal(signal.SIGINT)
+            assert process.wait() == 0
+        assert "warning: /none was not there (" in process.stderr
+        assert "warning: /still sent nothing" in process.stderr
 
 
 def test_what_is_used_wrongly(here, tmp_path) -> None:

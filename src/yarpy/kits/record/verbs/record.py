@@ -9,7 +9,7 @@ Enter) and stop (q); elsewhere only what is odd is told. So do the words pause, 
 mark TEXT, status and stop at the port /record/rpc:i (`yarpy rpc`), and its page in a browser, which
 --page opens. ^C and SIGTERM finish the file; what was written can be read even after a kill.
 
-Exit codes: 0 recorded, also when ^C or SIGTERM ends it; 1 nothing could be, or it had to stop.
+Exit codes: 0 recorded, also when ^C or SIGTERM ends it; 1 nothing was, or it had to stop.
 """
 
 from __future__ import annotations
@@ -187,7 +187,21 @@ def command(
     if recorder.failure:
         complain(recorder.failure)
         return 1
-    return 0
+    came = {name for name, count in status.counts.items() if count.messages}
+    silent = [_absence(port, port in status.counts) for port in ports if port not in came]
+    if recorder.messages or recorder.snapshots:
+        for line in silent:
+            warn(line)
+        return 0
+    complain(f"nothing was recorded: {'; '.join(silent) or 'no wanted port sent anything'}")
+    return 1
+
+
+def _absence(port: str, there: bool) -> str:
+    """Return why nothing came of a port that was named."""
+    return (
+        f"{port} {'sent nothing' if there else 'was not there (yarpy name list tells which are)'}"
+    )
 
 
 def parse_rate(text: str) -> tuple[str, float]:
