@@ -36,7 +36,7 @@ from yarpy.data.python.array import array_of, scalar
 from yarpy.data.python.array import blocks as array_blocks
 from yarpy.data.python.loaded import loaded
 from yarpy.data.python.place import located
-from yarpy.data.reader import KEPT, SMALL, read_small
+from yarpy.data.reader import KEPT, SMALL, read_planned, read_small
 from yarpy.data.sig.image import Image
 from yarpy.data.sig.vector import Vector
 from yarpy.data.stamp import Stamp
@@ -226,6 +226,10 @@ def decode(view: Buffer, question: Question | None = None) -> Any:
             return read_bottle(view)
         code, count = _read_head(view)
         if code == LIST:
+            if count > 1:
+                planned = read_planned(Bottle, view, count)
+                if planned is not None:
+                    return planned[0]
             if len(view) >= description.SMALLEST:
                 start = description.place(view)
                 if start:
@@ -280,8 +284,12 @@ def decode_leading(buffer: bytes) -> tuple[Any, int] | None:
     if code - LIST in KEPT and count > 0:  # numbers alone, whose length their count says
         end = 8 + count * FIXED[code - LIST][1]
         return (decode(buffer[:end]), end) if 12 <= end <= len(buffer) else None
-    if code == LIST and count == 4:  # which may be an Image or a Sound
-        return None
+    if code == LIST and count > 1:
+        planned = read_planned(Bottle, buffer, count)
+        if planned is not None:
+            return planned
+        if count == 4:  # which may be an Image or a Sound
+            return None
     if len(buffer) >= description.SMALLEST and buffer.find(_KEY) >= 0:
         return None  # perhaps a description; `in` would try to make a number of the key first
     try:

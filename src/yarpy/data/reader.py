@@ -110,15 +110,27 @@ def read_element(
     return items[0], end
 
 
-def read_small(
-    make_list: type[L], make_dict: Callable[[L], Any], buffer: bytes, keep: Keep | None = None
-) -> tuple[L, int]:
-    """The list that at most SMALL bytes begin with, and how many it takes; as `read_list`.
+def read_planned(make_list: type[L], buffer: Buffer, count: int) -> tuple[L, int] | None:
+    """The list that a buffer begins with, and how many bytes it takes; None if it is not of the
+    kind that came last in that size, with that `count` (as its head says) of elements.
 
     Messages of a kind follow each other: if the last one of the same size and count held plain
     numbers alone, this one is taken apart in the same way, and the tags in it show whether that was
     right.
     """
+    plan = _plans.get((len(buffer), count))
+    if plan is not None:
+        parts = plan.unpack_from(buffer)
+        if parts[::2] == plan.tags:
+            return make_list(parts[1::2]), plan.end
+    return None
+
+
+def read_small(
+    make_list: type[L], make_dict: Callable[[L], Any], buffer: bytes, keep: Keep | None = None
+) -> tuple[L, int]:
+    """The list that at most SMALL bytes begin with, and how many it takes; as `read_list`. What is
+    learned here of a message of plain numbers lets `read_planned` read the next one."""
     size = len(buffer)
     if size < 8:
         raise Truncated(f"a Bottle takes at least 8 bytes, here are {size}", 8)
@@ -126,11 +138,9 @@ def read_small(
         code, count = _read_pair(buffer)
         planned = code == LIST and 0 < count <= _PLANNED
         if planned:
-            plan = _plans.get((size, count))
-            if plan is not None:
-                parts = plan.unpack_from(buffer)
-                if parts[::2] == plan.tags:
-                    return make_list(parts[1::2]), plan.end
+            found = read_planned(make_list, buffer, count)
+            if found is not None:
+                return found
         items = make_list()
         kind = code & UNIT_MASK
         end = _read_items(buffer, 8, kind, count, 0, items, None, make_list, make_dict, keep)

@@ -16,6 +16,8 @@ each signal, so that a program with a timer would wait for ever.
 from __future__ import annotations
 
 import time
+from collections.abc import Callable, Iterator
+from itertools import repeat
 from typing import Final
 
 from yarpy.link.cores import cores
@@ -24,7 +26,7 @@ from yarpy.link.ending import NOW
 from yarpy.transports.base import MSG_DONTWAIT, SocketTransport, Transport
 from yarpy.wire.aside_stream import AsideStream
 from yarpy.wire.frame_stream import FrameStream
-from yarpy.wire.stream import Buffer, ByteStream
+from yarpy.wire.stream import BUFFER_SIZE, Buffer, ByteStream
 
 SOON: Final = 200e-6
 LOOKING: Final = 120e-6
@@ -34,8 +36,8 @@ LAST_PENALTY: Final = 512
 FEW: Final = 8
 LITTLE: Final = 1 << 11
 NONE: Final = -1
-_WHOLE: Final = (0,)  # arguments of the system's calls
-_NO_WAITING: Final = (MSG_DONTWAIT,)
+_WHOLE: Final = repeat(0)  # arguments of the system's calls, for ever
+_NO_WAITING: Final = repeat(MSG_DONTWAIT)
 
 
 class ByteDriver(Driver):
@@ -56,6 +58,8 @@ class ByteDriver(Driver):
         self._looks = False  # poll for the next bytes instead of sleeping
         self._skip = 0  # waits to pass before polling is tried again
         self._penalty = FIRST_PENALTY
+        self._aimed: memoryview | None = None  # a buffer, and what takes bytes into it
+        self._tries: Iterator[int] = iter(())
         self._came = NONE  # bytes that the system has put into the stream's buffer; 0: the end
         self._taken = 0  # bytes of the output that the system has taken
 
@@ -235,9 +239,10 @@ class ByteDriver(Driver):
         """Take bytes that are there already, or the end; return whether there was either."""
         receive = self._recv
         if receive is not None and MSG_DONTWAIT:
+            tries = self._tries if buffer is self._aimed else self._aim(receive, buffer)
             try:
-                for self._came in map(receive, (buffer,), _WHOLE, _NO_WAITING):
-                    pass
+                for self._came in tries:
+                    break
             except BlockingIOError:
                 return False
             return True
@@ -245,6 +250,14 @@ class ByteDriver(Driver):
         for self._came in map(receive, (buffer,)):
             pass
         return self._came >= 0
+
+    def _aim(self, receive: Callable[..., int], buffer: memoryview) -> Iterator[int]:
+        """Return what takes bytes that are there into this buffer, each time that the next number
+        is asked for. That of a stream's first buffer is kept: making it takes a while."""
+        tries = map(receive, repeat(buffer), _WHOLE, _NO_WAITING)
+        if self._plain and len(buffer) == BUFFER_SIZE:
+            self._tries, self._aimed = tries, buffer
+        return tries
 
     def _look(self, buffer: memoryview) -> bool:
         """Poll until bytes come; return False when that takes longer than going to sleep would."""
