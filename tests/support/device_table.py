@@ -8,14 +8,21 @@ looked up; `WHY` says why there are none.
 
 from __future__ import annotations
 
+import sys
 from pathlib import Path
 from typing import Final
 
 from yarpy.kits.devices.interfaces import interfaces
 
+if __name__ == "__main__":
+    sys.path.insert(0, str(Path(__file__).parents[1]))
+
+from support.device_times import tables
+
 ROOT: Final = Path(__file__).parents[2]
 PAGE: Final = ROOT / "docs" / "devices.md"
 BEGIN: Final = "<!-- generated: interfaces -->\n"
+TIMES: Final = "<!-- generated: times -->\n"
 END: Final = "<!-- end -->\n"
 
 #: The headers of YARP's library of devices, 3.9.1 and 4.0.0, and those within others.
@@ -129,8 +136,6 @@ ALSO: Final = {"IRGBDSensor": "IDepthVisualParams"}
 
 #: What no C++ here has, or was not asked for when it was recorded.
 _SINCE: Final = ("ILinearVelocitySensors", "IThreeAxisAngularAccelerometers")
-#: What was not tried with 3.9.1.
-_NOT_3_9: Final = ("IFrameGrabberControlsDC1394", "IVirtualAnalogSensor")
 #: What only boards of 4.0 have.
 _BOARD_4: Final = ("IJointBrake", "IVelocityDirect")
 #: What was not tried with 4.0.0.
@@ -193,7 +198,6 @@ def table() -> str:
         rest = {"3.5": NEWER, "3.9.1": LATEST, **({} if name in _NOT_4 else {"4.0.0": set()})}
         tried = [version for version, others in rest.items() if among - others]
         tried = ["4.0.0"] if each in _BOARD_4 else tried
-        tried = [version for version in tried if version != "3.9.1" or each not in _NOT_3_9]
         tried[:1] = [f"C++ {version}" for version in tried[:1]]
         tried = [] if each in _SINCE else tried
         among = among & LATEST if each in _BOARD_4 else among
@@ -209,11 +213,13 @@ def table() -> str:
 
 def page() -> str:
     """The whole page with the table of today."""
-    text = PAGE.read_text()
-    before, _, rest = text.partition(BEGIN)
-    _, _, after = rest.partition(END)
-    return f"{before}{BEGIN}{table()}{END}{after}"
+    text = PAGE.read_text(encoding="utf-8")
+    for begin, made in ((BEGIN, table()), (TIMES, tables())):
+        before, _, rest = text.partition(begin)
+        _, _, after = rest.partition(END)
+        text = f"{before}{begin}{made}{END}{after}"
+    return text
 
 
 if __name__ == "__main__":
-    PAGE.write_text(page())
+    PAGE.write_text(page(), encoding="utf-8", newline="\n")

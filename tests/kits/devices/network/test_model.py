@@ -20,6 +20,18 @@ def test_members() -> None:
     assert Odometry2D.members["odometry"].source == "odometry:o"
 
 
+def test_arguments_that_are_taken_by_name_alone() -> None:
+    class Lamp(Interface):
+        @call("dim_RPC")
+        def dim(self, *, level: float) -> None: ...
+
+    dim = Lamp.members["dim"]
+    assert dim.count == -1 and MobileBase.members["last_velocity"].count == 0
+    assert MobileBase.members["apply_velocity"].arguments((1, 2, 3, 4), {}) == (1, 2, 3, 4)
+    with pytest.raises(TypeError):
+        dim.arguments((1.0,), {})
+
+
 def test_members_are_inherited() -> None:
     class More(Odometry2D):
         @call("more_RPC")

@@ -101,6 +101,8 @@ class Member:
     doc: str
     signature: inspect.Signature
     results: tuple[Any, ...]
+    count: int
+    """How many arguments it takes in their order; -1 where some are taken by name alone."""
     function: str = ""
     cpp: str = ""
     status: bool = True
@@ -121,6 +123,8 @@ class Member:
 
     def arguments(self, given: tuple[Any, ...], named: dict[str, Any]) -> tuple[Any, ...]:
         """All arguments in their order. TypeError as a call of a function raises it."""
+        if not named and len(given) == self.count:
+            return given  # a tenth of a call is saved
         bound = self.signature.bind(None, *given, **named)
         bound.apply_defaults()
         return bound.args[1:]
@@ -227,4 +231,7 @@ def _member(name: str, function: Any) -> Member:
     else:
         results = get_args(result) if get_origin(result) is tuple else (result,)
     doc = inspect.cleandoc(function.__doc__ or "")
-    return Member(name, doc, signature, results, **getattr(function, _FACTS))
+    kinds = [each.kind for each in signature.parameters.values()]
+    in_order = all(kind is inspect.Parameter.POSITIONAL_OR_KEYWORD for kind in kinds)
+    count = len(kinds) - 1 if in_order else -1
+    return Member(name, doc, signature, results, count, **getattr(function, _FACTS))
