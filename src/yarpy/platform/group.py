@@ -17,7 +17,7 @@ import subprocess
 import sys
 from typing import Any, Final
 
-from yarpy.platform.process import KILL, signal_group
+from yarpy.platform.process import signal_group
 
 if sys.platform == "win32":
     import ctypes
@@ -60,7 +60,7 @@ if sys.platform == "win32":
 
     class Group:
         """A program that was started with `START`, and all that it starts. Raises OSError, and then
-        the program has ended."""
+        the program does nothing, and is to be ended."""
 
         def __init__(self, pid: int) -> None:
             self.pid = pid
@@ -79,9 +79,7 @@ if sys.platform == "win32":
                     and ctypes.WinDLL("ntdll").NtResumeProcess(first) >= 0
                 )
                 if not done:
-                    error = ctypes.WinError(ctypes.get_last_error())
-                    self._kernel.TerminateProcess(first, KILL)
-                    raise error
+                    raise ctypes.WinError(ctypes.get_last_error())
             finally:
                 self._kernel.CloseHandle(first)
 

@@ -11,7 +11,7 @@ from collections.abc import Iterator
 import pytest
 from support.wait import HANG, wait_until
 
-from yarpy.kits.launch.supervise import process
+from yarpy.kits.launch.supervise import local, process
 from yarpy.kits.launch.supervise.local import LocalHandle, LocalRunner
 from yarpy.kits.launch.supervise.runner import Program, Runner
 from yarpy.limit import OUTPUT_LINE
@@ -112,6 +112,21 @@ def test_whatever_cannot_be_started_is_named(
     monkeypatch.setattr(subprocess, "Popen", start)
     with pytest.raises(OSError, match="there is none: 'slep'"):
         Started(runner, "slep", "600")
+
+
+def test_one_that_becomes_no_group_is_not_left(
+    runner: LocalRunner, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    pids: list[int] = []
+
+    def refuse(pid: int) -> None:
+        pids.append(pid)
+        raise OSError(5, "access denied")
+
+    monkeypatch.setattr(local, "Group", refuse)
+    with pytest.raises(OSError, match="access denied"):
+        python(runner, "import time; time.sleep(600)")
+    assert len(pids) == 1 and not runs(pids[0])
 
 
 @PROC

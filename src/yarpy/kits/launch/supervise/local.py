@@ -211,5 +211,6 @@ def _grouped(child: subprocess.Popen[bytes]) -> Group:
     try:
         return Group(child.pid)
     except OSError:
-        with child:  # it has ended
+        child.kill()  # it has done nothing yet
+        with child:
             raise
