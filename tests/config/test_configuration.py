@@ -1,5 +1,7 @@
 """Finding the servers: directories, files in both forms, environment, writing."""
 
+import errno
+import os
 from pathlib import Path
 
 import pytest
@@ -80,6 +82,19 @@ def test_unusable_address_files(text: str, complaint: str, tmp_path: Path) -> No
         AddressError, match=r"yarp\.conf: .*; `yarpy conf HOST PORT` writes the file"
     ):
         read_server(tmp_path)
+
+
+def test_a_disk_that_cannot_be_written_is_told_with_the_file(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def refuse(path: Path, *args: object, **options: object) -> None:
+        raise OSError(errno.EROFS, os.strerror(errno.EROFS), str(path))
+
+    monkeypatch.setattr(Path, "write_text", refuse)
+    monkeypatch.setattr(Path, "unlink", refuse)
+    with pytest.raises(OSError) as told:
+        write_server(tmp_path, Server("h", 1))
+    assert told.value.filename == str(tmp_path / "yarp.conf")
 
 
 def test_who_writes_the_file_anew_goes_on(tmp_path: Path) -> None:

@@ -11,6 +11,7 @@ from __future__ import annotations
 
 import os
 from collections.abc import Sequence
+from contextlib import suppress
 from datetime import UTC, datetime, timedelta
 from pathlib import Path
 from typing import Any, Final
@@ -158,5 +159,6 @@ def _write(files: dict[Path, tuple[bytes, int]]) -> None:
     except OSError as error:
         error.filename = str(file)  # a full disk does not say which file
         for draft in drafts.values():
-            draft.unlink(missing_ok=True)
+            with suppress(OSError):  # on a disk that cannot be written nothing can be taken away
+                draft.unlink(missing_ok=True)
         raise

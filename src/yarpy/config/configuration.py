@@ -17,6 +17,7 @@ from __future__ import annotations
 import os
 import re
 from collections.abc import Callable, Mapping, Sequence
+from contextlib import suppress
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -316,6 +317,7 @@ def _write(path: Path, text: str) -> None:
         draft.write_text(text, "utf-8", "surrogateescape", newline="\n")
         replace(draft, path)
     except OSError as error:
-        draft.unlink(missing_ok=True)
         error.filename = str(path)  # a full disk does not say which file
+        with suppress(OSError):  # on a disk that cannot be written nothing can be taken away
+            draft.unlink(missing_ok=True)
         raise

@@ -41,6 +41,7 @@ from yarpy.cli.stderr import warn
 from yarpy.errors import AddressError
 from yarpy.log import readable
 from yarpy.platform import waiting
+from yarpy.platform.refusal import reason
 from yarpy.registry import delegates
 
 if TYPE_CHECKING:
@@ -313,7 +314,7 @@ def _serve(
             try:
                 say(f"Address stored in {write_server(found.directory, server)}")
             except OSError as error:
-                warn(f"the address cannot be stored: {error}")
+                warn(f"the address cannot be stored: {reason(error)}: {error.filename}")
         if say is not _nothing:
             scribe = Scribe()
             service.on_command = scribe.command
