@@ -16,7 +16,7 @@ from support.wait import HANG, wait_until
 from yarpy import scope
 from yarpy.contact import Contact
 from yarpy.errors import AddressError, NoNameServer, Timeout
-from yarpy.link.begin.accept_loop import LOOP
+from yarpy.link.begin.accept_loop import LOOP, AcceptLoop
 from yarpy.names.client import YarpNameClient
 from yarpy.names.fallback_client import SeveralNames
 from yarpy.nameserver.local import LocalNames
@@ -73,10 +73,16 @@ def test_names_that_cannot_be(name: str, problem: str, names: LocalNames) -> Non
         Port(name, names=names)
 
 
-def test_name_in_use_is_refused_with_who_has_it(names: LocalNames) -> None:
+def test_name_in_use_is_refused_with_who_has_it(
+    names: LocalNames, monkeypatch: pytest.MonkeyPatch
+) -> None:
     with Port("/here", names=names) as port:
+        with pytest.raises(AddressError, match='"/here" is open in this program already: close'):
+            Port("/here", names=names)
+        monkeypatch.setattr(registration, "LOOP", AcceptLoop())  # as another program sees it
         with pytest.raises(AddressError, match=f'"/here" is in use by a port at {port.address}'):
             Port("/here", names=names)
+        monkeypatch.undo()
         assert names.query("/here") == port.contact
     with Port("/here", names=names):
         pass

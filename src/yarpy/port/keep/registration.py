@@ -17,8 +17,9 @@ from yarpy.config import access_file
 from yarpy.config.configuration import port_name
 from yarpy.contact import Contact, check_name
 from yarpy.errors import AddressError, LinkClosed, NoNameServer, Timeout, YarpError
+from yarpy.link.begin.accept_loop import LOOP
 from yarpy.log import logger
-from yarpy.names.address import local_addresses, outward_address
+from yarpy.names.address import is_local, local_addresses, outward_address
 from yarpy.names.base import NameClient, Values, introduce
 from yarpy.names.default import DEFAULT, secret
 from yarpy.names.fallback_client import SeveralNames
@@ -171,6 +172,12 @@ class Registration:
                 "now, perhaps stopped or busy: end it, or take its name out by `yarpy name "
                 f"unregister {self.name}`, or choose another name"
             ) from error
+        ours = is_local(known.host) and any(one.name == self.name for one in LOOP.entrances)
+        if found == self.name and ours:
+            raise AddressError(
+                f'"{self.name}" is open in this program already: close() that port first, or '
+                "choose another name"
+            )
         if found == self.name:
             raise AddressError(
                 f'"{self.name}" is in use by a port at {known.address}: close that program, or '
