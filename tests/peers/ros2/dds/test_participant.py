@@ -216,9 +216,10 @@ def test_a_promise_that_is_not_enough_is_named(caplog: pytest.LogCaptureFixture)
 
 def test_several_threads_look_at_once() -> None:
     """The library translates what others promise in variables that all threads share."""
-    qualities = {"/arm": "sensor", "/head": "latched", "/leg": "default"}
+    own = f"/many_{os.getpid()}"
+    qualities = {f"{own}/arm": "sensor", f"{own}/head": "latched", f"{own}/leg": "default"}
     with ExitStack() as held:
-        node = held.enter_context(ros2.Node("one_of_many", rmw="dds"))
+        node = held.enter_context(ros2.Node(own, rmw="dds"))
         for name, qos in qualities.items():
             node.publisher(name, "std_msgs/msg/String", qos=qos)
         part = POOL.take(0)

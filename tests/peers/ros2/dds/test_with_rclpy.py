@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import os
 from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
@@ -56,7 +57,7 @@ class Rclpy(Process):
 @pytest.fixture(scope="module")
 @brings("rclpy")
 def rclpy(here: None, request: pytest.FixtureRequest) -> Iterator[Rclpy]:
-    with Rclpy("rclpy_peer") as found:
+    with Rclpy(f"rclpy_peer_{os.getpid()}") as found:  # others may run these tests meanwhile
         yield found
 
 
