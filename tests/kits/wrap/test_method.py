@@ -126,6 +126,19 @@ def test_arguments_in_their_order() -> None:
         found.dump(me, (1, 2, 3), {})
 
 
+def test_arguments_that_go_as_they_are() -> None:
+    def look(self: Any, a: int, b: list[Any], c: Any) -> int: ...
+
+    found = method(look, "/a")
+    assert found.exact(bound=True) == (int, list, None)
+    assert found.exact(bound=False) == (None, int, list, None)
+
+    def ask(self: Any, *, a: int) -> int: ...
+
+    # Without arguments in order it is not complete either.
+    assert method(ask, "/a").exact(bound=True) != ()
+
+
 def test_inputs_are_the_first_parameters() -> None:
     def mix(self: Any, a: int, b: str, gain: float = 1.0) -> tuple[int, str]: ...
 

@@ -242,12 +242,16 @@ class Method:
             found.append(Parameter(name, shape, parameter.default, keyword_only))
         return Signature(self.qualname, tuple(found), self.result, variable)
 
+    def exact(self, bound: bool) -> tuple[type | None, ...]:
+        """Return the types of arguments in order that need neither `dump` nor `load`, without the
+        object where the method is `bound` to one."""
+        self.read_hints()
+        return (None,) if self._in_order is None else self._exact[bound:]
+
     def dump(
         self, instance: Any, args: Sequence[Any], kwargs: Mapping[str, Any]
     ) -> tuple[list[Any], dict[str, Any]]:
         """Arguments as plain Python. Raises TypeError for those that do not fit the signature."""
-        if args and not kwargs and tuple(map(type, args)) == self._exact[instance is not None :]:
-            return list(args), {}
 
         def plain(name: str, value: Any) -> Any:
             try:
@@ -261,8 +265,6 @@ class Method:
         self, instance: Any, args: Sequence[Any], kwargs: Mapping[str, Any]
     ) -> tuple[list[Any], dict[str, Any]]:
         """The arguments of a question. Raises TypeError, DecodeError."""
-        if args and not kwargs and tuple(map(type, args)) == self._exact[instance is not None :]:
-            return list(args), {}
 
         def loaded(name: str, value: Any) -> Any:
             try:

@@ -329,7 +329,7 @@ class Serve(Mode):
 
     def __init__(self, method: Method, instance: Any, outputs: Sequence[Output]) -> None:
         super().__init__(method, instance, outputs)
-        method.read_hints()
+        self._exact = method.exact(self.bound)
         self._instance = instance if inspect.isclass(instance) else None
         self._reference = None if instance is self._instance else _weak(instance)
         try:
@@ -353,9 +353,10 @@ class Serve(Mode):
         try:
             if instance is None and reference is not None:
                 raise PortClosed("the object whose method this is does not exist any more")
-            given, named = method.load(instance, args, kwargs)
+            if kwargs or tuple(map(type, args)) != self._exact:
+                args, kwargs = method.load(instance, args, kwargs)
             first = () if instance is None else (instance,)
-            value = method.func(*first, *given, **named)
+            value = method.func(*first, *args, **kwargs)
             if method.kind == "coroutine":
                 value = self._waited(value)
             shape = method.result
@@ -398,17 +399,19 @@ class Call(Mode):
 
     def __init__(self, method: Method, instance: Any, outputs: Sequence[Output]) -> None:
         super().__init__(method, instance, outputs)
-        method.read_hints()
+        self._exact = method.exact(self.bound)
         way = outputs[0].ways(outputs[0].topic, method.called(self.bound))[0]
         self._client: Client = middleware_of(way).client(way, method.result)
         self._pool: ThreadPoolExecutor | None = None
 
     def run(self, func: Function, args: tuple[Any, ...], kwargs: dict[str, Any]) -> Any:
         method = self.method
-        timeout = self.timeout(kwargs) if kwargs else method.timeout
+        asked = args[self.bound :]
+        if not kwargs and tuple(map(type, asked)) == self._exact:
+            return self._client.call(method.name, [*asked], kwargs, method.timeout)
+        timeout = self.timeout(kwargs)
         instance = args[0] if self.bound else None
-        asked, named = method.dump(instance, args[self.bound :], kwargs)
-        return self._client.call(method.name, asked, named, timeout)
+        return self._client.call(method.name, *method.dump(instance, asked, kwargs), timeout)
 
     async def run_async(self, func: Function, args: tuple[Any, ...], kwargs: dict[str, Any]) -> Any:
         if self._pool is None:

@@ -134,7 +134,8 @@ class PortServer:
         value = message.value
         words = value if isinstance(value, list) else [value]
         if words and words[0] == self._name:
-            found = self._answer(list(words[1:]), {})
+            _, *args = words
+            found = self._answer(args, {})
         else:
             found = self._answer(*self._arguments(message))
         return failure(found) if isinstance(found, Failure) else self._form(found)

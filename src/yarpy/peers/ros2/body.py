@@ -9,18 +9,19 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from struct import Struct
-from typing import TYPE_CHECKING, Any, Final
+from typing import Any, Final
 
 from yarpy.data import codec
 from yarpy.data.value import Buffer
 from yarpy.peers.ros.body import RosMessage, said_by
+from yarpy.peers.ros.message.message import Message as Ros
+from yarpy.peers.ros.message.native import to_message, to_value
 from yarpy.wire.message import UNSENDABLE, Encoded, Packet
-
-if TYPE_CHECKING:
-    from yarpy.peers.ros.message.message import Message as Ros
 
 _HEAD: Final = 4  # bytes in front of the fields
 _STAMP: Final = Struct("<iI")
+_FIELDS: Final = _HEAD + _STAMP.size  # ... and those behind the time
+_NO_TIME: Final = bytes(_STAMP.size)
 _SECOND: Final = 1_000_000_000
 
 
@@ -54,9 +55,6 @@ def _encode(packet: Packet, kind: type[Ros], now: Callable[[], float] | None) ->
             return _stamped(kind.from_bottle(value).to_ros(), kind, packet.envelope, now)
         except UNSENDABLE as error:
             raise type(error)(f"{kind._type} is expected here: {error}") from None
-    from yarpy.peers.ros.message.message import Message as Ros
-    from yarpy.peers.ros.message.native import to_message, to_value
-
     try:
         if isinstance(value, Ros):
             if (value._type, value._md5sum) == (kind._type, kind._md5sum):
@@ -75,13 +73,15 @@ def _stamped(
     if not kind._has_header:
         return blocks
     said = said_by(envelope)
-    first = bytearray(blocks[0])
+    first = bytes(blocks[0])
     if said is not None:
-        _STAMP.pack_into(first, _HEAD, said[1] & 0x7FFFFFFF, said[2])
-    elif now is not None and not any(first[_HEAD : _HEAD + _STAMP.size]):
+        seconds, nanoseconds = said[1:]
+    elif now is not None and first[_HEAD:_FIELDS] == _NO_TIME:
         seconds, nanoseconds = divmod(round(now() * 1e9), _SECOND)
-        _STAMP.pack_into(first, _HEAD, seconds & 0x7FFFFFFF, nanoseconds)
-    return (bytes(first), *blocks[1:])
+    else:
+        return blocks
+    time = _STAMP.pack(seconds & 0x7FFFFFFF, nanoseconds)
+    return (first[:_HEAD] + time + first[_FIELDS:], *blocks[1:])
 
 
 def time_of(packet: Packet) -> int:

@@ -12,6 +12,7 @@ from support.capture import load_capture
 from support.ros_value import filled
 
 from yarpy.errors import DecodeError, Truncated
+from yarpy.peers.ros.message import reader
 from yarpy.peers.ros.message.library import Library
 
 IMAGE = bytes.fromhex(
@@ -111,6 +112,16 @@ def test_there_is_a_limit_of_elements(library: Library, monkeypatch: pytest.Monk
     monkeypatch.setenv("YARPY_MAX_ELEMENTS", "30000")
     with pytest.raises(DecodeError, match="YARPY_MAX_ELEMENTS"):
         cls.from_ros(half + half)
+
+
+def test_a_large_array_asks_for_no_limit_of_elements(
+    library: Library, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Looking into the environment takes longer than all else of a picture."""
+    monkeypatch.setattr(reader, "limits", None)
+    cls = library.message_of("p/Bytes", "string name\nuint8[] data")
+    data = struct.pack("<I", 1) + b"x" + struct.pack("<I", 1 << 20) + bytes(1 << 20)
+    assert cls.from_ros(data).data.nbytes == 1 << 20
 
 
 def test_messages_of_many_values_are_read_in_parts(library: Library) -> None:

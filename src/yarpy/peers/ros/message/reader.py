@@ -22,7 +22,8 @@ from yarpy.limit import limits
 from yarpy.peers.ros.message.message import Duration, Message, Time, attribute
 from yarpy.peers.ros.message.model import ListOf, Primitive, Struct, Type, smallest
 
-#: `read(bytes, position, size, room)` gives a message and the position behind it
+#: `read(bytes, position, size, room)` gives a message and the position behind it; `room`: how many
+#: more elements there may be, empty at the beginning, or None: as many as there are
 Read = Callable[[Buffer, int, int, list[int] | None], tuple[Any, int]]
 
 #: messages up to this size cannot have too many elements; theirs are not counted
@@ -44,7 +45,7 @@ def whole(struct: Struct, read: Read) -> Callable[[Buffer], Any]:
     def from_ros(view: Buffer) -> Any:
         size = len(view)
         try:
-            found, end = read(view, 0, size, None if size <= SMALL else [limits().elements])
+            found, end = read(view, 0, size, None if size <= SMALL else [])
         except struct_error:
             raise Truncated(
                 f"{name}: the message goes on beyond its {size} bytes", size + 1
@@ -214,6 +215,8 @@ def short(path: str, need: int, size: int) -> None:
 
 
 def take(room: list[int], count: int, path: str) -> None:
+    if not room:  # the limit is looked up for what it is needed for: for pictures it is not
+        room.append(limits().elements)
     room[0] -= count
     if room[0] < 0:
         raise DecodeError(

@@ -43,9 +43,14 @@ def whole(struct: Struct, write: Write, head: bytes = b"") -> Callable[[Any], Bl
             write(self, pieces.append, 0)
         except (struct_error, TypeError, AttributeError, OverflowError, ValueError) as error:
             raise fault(struct, self) or error from None
-        if memoryview in map(type, pieces):
-            return joined(pieces)
-        return (b"".join(pieces),)
+        kinds = [*map(type, pieces)]
+        arrays = kinds.count(memoryview)
+        if not arrays:
+            return (b"".join(pieces),)
+        if arrays == 1 and kinds[-1] is memoryview and len(kinds) > 1:  # as of a picture
+            data = pieces.pop()
+            return b"".join(pieces), data
+        return joined(pieces)
 
     return to_ros
 

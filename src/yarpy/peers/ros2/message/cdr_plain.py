@@ -20,7 +20,6 @@ from typing import Final
 
 from yarpy.data.value import Buffer
 from yarpy.errors import DecodeError
-from yarpy.limit import limits
 from yarpy.peers.ros.message.model import ListOf, Primitive, Struct, Type, smallest
 from yarpy.peers.ros.message.reader import beyond, short, take
 
@@ -53,7 +52,7 @@ class _Walk:
         self._version_2 = version_2
         self._at = 0
         self._made = bytearray()
-        self._room = [limits().elements]
+        self._room: list[int] = []
 
     def whole(self, struct: Struct) -> bytes:
         self._struct(struct, struct.name)

@@ -21,7 +21,6 @@ from typing import Any, Final
 
 from yarpy.data.value import Buffer
 from yarpy.errors import DecodeError, Truncated
-from yarpy.limit import limits
 from yarpy.peers.ros.message.message import Message
 from yarpy.peers.ros.message.model import Primitive, Struct, Type
 from yarpy.peers.ros.message.reader import SMALL, Read, Reader
@@ -62,7 +61,7 @@ def whole(struct: Struct, read: Read) -> Callable[[Buffer], Any]:
         body = memoryview(view)[4:]
         size = len(body)
         try:
-            found, end = read(body, 0, size, None if size <= SMALL else [limits().elements])
+            found, end = read(body, 0, size, None if size <= SMALL else [])
         except struct_error:
             raise Truncated(
                 f"{name}: the message goes on beyond its {size} bytes", size + 5

@@ -9,7 +9,7 @@ versions of the RMW send something longer, which is refused.
 from __future__ import annotations
 
 from struct import Struct
-from typing import Final, NamedTuple
+from typing import Final
 
 from yarpy.errors import DecodeError
 
@@ -18,21 +18,14 @@ _LAYOUT: Final = Struct("<qqB16s")
 SIZE: Final = _LAYOUT.size
 
 
-class Attachment(NamedTuple):
-    """`time` is in nanoseconds."""
-
-    number: int
-    time: int
-    gid: bytes
-
-
 def attachment(number: int, time: int, gid: bytes) -> bytes:
     """Return the bytes of an attachment."""
     return _LAYOUT.pack(number, time, GID_SIZE, gid)
 
 
-def parse_attachment(data: bytes) -> Attachment:
-    """Parse the bytes of an attachment. Raises DecodeError."""
+def parse_attachment(data: bytes) -> tuple[int, int, bytes]:
+    """Return number, time in nanoseconds and GID from the bytes of an attachment. Raises
+    DecodeError."""
     if len(data) != SIZE:
         why = (
             "the sender's rmw_zenoh is older than 0.1.2 (Humble), 0.2.4 (Jazzy) or 0.6.0 (Kilted): "
@@ -46,4 +39,4 @@ def parse_attachment(data: bytes) -> Attachment:
         raise DecodeError(
             f"an attachment with a GID of {size} bytes, where {GID_SIZE} are expected"
         )
-    return Attachment(number, time, gid)
+    return number, time, gid

@@ -392,7 +392,7 @@ class Server(Endpoint):
     def _heard(self, query: Any) -> None:
         attached, payload = query.attachment, query.payload
         try:
-            said = parse_attachment(b"" if attached is None else bytes(attached))
+            number, when, sender = parse_attachment(b"" if attached is None else bytes(attached))
         except DecodeError as error:
             self.dropped += 1
             query.reply_err(str(error).encode())
@@ -402,15 +402,15 @@ class Server(Endpoint):
             query.reply_err(b"too many questions are waiting")
             return
         body = b"" if payload is None else bytes(payload)
-        self.put(Incoming(body, said.number, said.time, (query, said)), MOST_QUESTIONS)
+        self.put(Incoming(body, number, when, (query, number, sender)), MOST_QUESTIONS)
 
     def give(self, item: Outgoing) -> None:
         if item.to is None:
             return
-        query, said = item.to
+        query, number, sender = item.to
         if item.failure:
             query.reply_err(item.failure.encode("utf-8", "replace"))
         else:
-            beside = attachment(said.number, time.time_ns(), said.gid)
+            beside = attachment(number, time.time_ns(), sender)
             query.reply(str(self.key), b"".join(item.body), attachment=beside)
         query.drop()  # the asker waits for the end of it, not for the answer
