@@ -2,6 +2,7 @@
 
 import os
 import signal
+import sys
 import threading
 import time
 from pathlib import Path
@@ -16,11 +17,15 @@ from yarpy.kits.launch.application.application import Application, Module, Need
 from yarpy.kits.launch.supervise import process
 from yarpy.kits.launch.supervise.supervisor import Supervisor
 
-pytestmark = pytest.mark.skipif(not process.known(), reason="this system has no /proc to look at")
+#: for what has words of a shell, signals, or is looked at in /proc
+PROC = pytest.mark.skipif(not process.known(), reason="this system has no /proc to look at")
+POSIX = os.name == "posix"
+SLEEP = ("sleep", "600") if POSIX else (sys.executable, "-c", "import time; time.sleep(600)")
+TRUE = ("true",) if POSIX else (sys.executable, "-c", "")
 
 
 def module(label: str, *words: str, **more: object) -> Module:
-    return Module(label, words[0] if words else "sleep", words=words or ("sleep", "600"), **more)  # type: ignore[arg-type]
+    return Module(label, words[0] if words else SLEEP[0], words=words or SLEEP, **more)  # type: ignore[arg-type]
 
 
 def supervisor(*modules: Module, **more: object) -> Supervisor:
@@ -61,6 +66,7 @@ def test_stops_in_reverse(network: yarpy.LocalNames, tmp_path: Path) -> None:
     assert left(running) == {}
 
 
+@PROC
 def test_a_killed_program_is_back_at_once(network: yarpy.LocalNames) -> None:
     back = threading.Event()
     seen: list[str] = []
@@ -84,8 +90,8 @@ def test_a_killed_program_is_back_at_once(network: yarpy.LocalNames) -> None:
 
 def test_it_is_over_when_nothing_runs_any_more(network: yarpy.LocalNames) -> None:
     running = supervisor(
-        module("good", "true"),
-        module("bad", "sh", "-c", "exit 3", restart="no"),
+        module("good", *TRUE),
+        module("bad", sys.executable, "-c", "exit(3)", restart="no"),
         module("gone", "/no/such/program"),  # never seen running, as a quick one may be
         module("late", after=("gone",)),
         names=network,
@@ -98,6 +104,7 @@ def test_it_is_over_when_nothing_runs_any_more(network: yarpy.LocalNames) -> Non
     assert late == 'late: "gone", after which it starts, has failed'
 
 
+@PROC
 def test_status_and_lines(network: yarpy.LocalNames) -> None:
     busy = "echo one; echo two; while :; do :; done"
     running = supervisor(
@@ -131,6 +138,7 @@ def test_a_port_that_the_whole_needs(network: yarpy.LocalNames) -> None:
     assert left(running) == {}
 
 
+@PROC
 def test_killing_takes_the_deaf(network: yarpy.LocalNames) -> None:
     deaf = "trap '' TERM; echo ready; while :; do sleep 0.05; done"
     running = Supervisor(
@@ -151,6 +159,7 @@ def test_no_runner_for_another_computer() -> None:
         supervisor(module("a", node="/nodeB"))
 
 
+@PROC
 def test_a_hundred_programs(network: yarpy.LocalNames) -> None:
     running = supervisor(*(module(f"s{n}") for n in range(100)), names=network)
     running.start()
@@ -196,7 +205,7 @@ def test_what_is_ended_by_hand_can_be_started_again(network: yarpy.LocalNames) -
 
 
 def test_at_rest_nothing_runs_and_nothing_is_over(network: yarpy.LocalNames) -> None:
-    running = supervisor(module("a"), module("b", "true"), names=network)
+    running = supervisor(module("a"), module("b", *TRUE), names=network)
     running.rest()
     assert all_in(running, "stopped") and left(running) == {}
     running.begin("b")
@@ -214,7 +223,7 @@ def test_another_description(network: yarpy.LocalNames) -> None:
     wait_until(lambda: all_in(running, "running"))
     before = {**running.units}
     found = Application("app", modules=[
-        module("stays"), module("other", "sleep", "601"), module("new")
+        module("stays"), module("other", *SLEEP, "1"), module("new")
     ])  # fmt: skip
     assert running.change(found) == [
         "new is new",
