@@ -211,10 +211,10 @@ def test_what_is_no_bottle_does_not_end_it(cli, writer):
         process.wait_line("error: a message from /read/writer cannot be printed: ", stream="err")
 
 
-def test_a_living_name_is_refused_with_the_hint(here, writer):
-    said = here("read", "/read/writer")
-    assert (said.code, said.out) == (1, "")
-    assert "is in use" in said.err and "`yarpy read ... /read/writer`" in said.err
+def test_a_living_name_is_refused_with_the_hint(cli, writer):
+    said = cli.run("read", "/read/writer")
+    assert (said.returncode, said.stdout) == (1, "")
+    assert "is in use" in said.stderr and "`yarpy read ... /read/writer`" in said.stderr
 
 
 def test_a_name_that_cannot_be_one(here):
