@@ -212,9 +212,10 @@ def test_what_is_no_bottle_does_not_end_it(cli, writer):
 
 
 def test_a_living_name_is_refused_with_the_hint(cli, writer):
-    said = cli.run("read", "/read/writer")
-    assert (said.returncode, said.stdout) == (1, "")
-    assert "is in use" in said.stderr and "`yarpy read ... /read/writer`" in said.stderr
+    with cli.start("read", "/read/writer") as process:  # as another program
+        assert process.wait(HANG) == 1
+    assert process.stdout == ""
+    assert "is in use" in process.stderr and "`yarpy read ... /read/writer`" in process.stderr
 
 
 def test_a_name_that_cannot_be_one(here):

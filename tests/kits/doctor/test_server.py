@@ -36,3 +36,18 @@ def test_what_overrides_the_files_is_named(tmp_path: Path) -> None:
         case.others = [Server("127.0.0.1", server.port)]
         [finding] = find(case)
     assert finding.advice == f"`{setting('YARPY_SERVER', f'127.0.0.1:{server.port}')}`"
+
+
+def test_a_port_that_another_server_knows_where_the_environment_says_which(tmp_path: Path) -> None:
+    with yarpy.NameServer() as server, yarpy.Port("/lost", names=server.client):
+        other = Server("127.0.0.1", server.port)
+        for path in (None, tmp_path / "yarp.conf"):
+            used = Server("127.0.0.1", 1, path=path)
+            case = made_up(wanted=("/lost",), servers=(used,), directory=tmp_path)
+            case.others, case.contacts = [other], {}
+            [finding] = [one for one in find(case) if one.probe == "other-namespace"]
+            assert finding.advice == (
+                f"`yarpy conf 127.0.0.1 {server.port}`"
+                if path
+                else f"`{setting('YARPY_SERVER', f'127.0.0.1:{server.port}')}`"
+            )

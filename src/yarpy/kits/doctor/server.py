@@ -34,8 +34,7 @@ def find(case: Case) -> Iterator[Finding]:
                 f"two name servers answer for {used.namespace}: {_place(used)}, which is used here "
                 f"({said_by(case, used)}), and {_place(other)}, which also is in this network; a "
                 "program that uses the one does not find the ports of the other",
-                f"end one of them, or write the right one down: `yarpy conf {other.host} "
-                f"{other.port}`",
+                f"end one of them, or choose the right one: `{_choice(used, other)}`",
                 "warning",
             )
 
@@ -62,10 +61,8 @@ def _no_server(case: Case) -> Finding:
     if others:
         other = others[0]
         verdict += f"; one of {other.namespace} answers at {_place(other)}"
-        if used is not None and used.path is None:  # a file would not be read
-            advice = f"`{setting('YARPY_SERVER', _place(other))}`"
-        elif used is None or other.namespace == used.namespace:
-            advice = f"`yarpy conf {other.host} {other.port}`"
+        if used is None or used.path is None or other.namespace == used.namespace:
+            advice = f"`{_choice(used, other)}`"
         else:
             advice = f"`yarpy namespace {other.namespace}`"
         return Finding("no-server", about, verdict, advice)
@@ -100,13 +97,21 @@ def _elsewhere(case: Case) -> list[Finding]:
                     name,
                     f'"{name}" is known to the name server of {other.namespace} at '
                     f"{_place(other)}, while this shell asks that of {here}",
-                    f"`yarpy conf {other.host} {other.port}`"
+                    f"`{_choice(used, other)}`"
                     if same
                     else f"`yarpy namespace {other.namespace}`"
                     + ("" if other.path else f" and `yarpy conf {other.host} {other.port}`"),
                 )
             )
     return found
+
+
+def _choice(used: Server | None, other: Server) -> str:
+    """Return the command that chooses another server: where the environment says which is used, no
+    file would be read."""
+    if used is not None and used.path is None:
+        return setting("YARPY_SERVER", _place(other))
+    return f"yarpy conf {other.host} {other.port}"
 
 
 def _ask(case: Case, server: Server, name: str) -> Contact | None:
