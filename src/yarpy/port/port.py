@@ -354,15 +354,15 @@ def envelope_of(stamp: Stamp | str | bytes) -> bytes:
     character. Raises TypeError for anything else."""
     if isinstance(stamp, Stamp):
         return stamp.to_text().encode()
-    if not isinstance(stamp, str | bytes):
-        raise TypeError(
-            f"a stamp is a yarpy.Stamp or a line of text, not {stamp!r}; a message is one "
-            "object, several go into a list: write([1, 2])"
-        )
     if isinstance(stamp, str):
         if stamp.isascii() and stamp.isprintable():
             return stamp.encode()
         stamp = stamp.encode()
+    if not isinstance(stamp, bytes):
+        raise TypeError(
+            f"a stamp is a yarpy.Stamp or a line of text, not {stamp!r}; a message is one "
+            "object, several go into a list: write([1, 2])"
+        )
     data = stamp
     for index, byte in enumerate(data):
         if byte < 0x20 or byte >= 0x80:
