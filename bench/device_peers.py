@@ -31,7 +31,7 @@ HERE = Path(__file__).resolve().parent
 sys.path.insert(0, str(HERE.parent / "tests"))
 
 import pytest  # noqa: E402
-from device_rows import ROWS, Row  # noqa: E402
+from device_rows import BOTH, ROWS, Row  # noqa: E402
 from support.cpp import CppYarp  # noqa: E402
 from support.cpp_device import DEVICES, cpp_device  # noqa: E402
 from support.cpp_link import linked  # noqa: E402
@@ -154,6 +154,8 @@ def main() -> None:
     with tempfile.TemporaryDirectory() as home, CppYarp.prepare(Path(home)).server() as cpp:
         os.environ["YARP_CONFIG_HOME"] = cpp.environment["YARP_CONFIG_HOME"]
         version = cpp.run("version").stdout.split()[-1].partition("~")[0]
+        if cpp.version not in BOTH:
+            sys.exit(f"C++ YARP {version} is not 3.9 or 4.0: name one of them in YARPY_CPP_YARP")
         bench = Bench(cpp, options.calls, options.seconds)
         for row in ROWS:
             if options.only and row.interface not in options.only:
