@@ -7,6 +7,7 @@ import sys
 import threading
 from collections.abc import Iterator
 from contextlib import contextmanager
+from typing import Any
 
 import pytest
 from support.process import Process
@@ -72,6 +73,12 @@ def test_life_ends_when_update_says_so() -> None:
     assert module.run(ResourceFinder(["--limit", "3"]), names=LocalNames()) == 0
     assert module.count == 3
     assert module.said == ["configure", "close"]
+
+
+@pytest.mark.parametrize("options", [[], ["--period", "1"], "robot.ini"])
+def test_options_as_they_are_typed_are_refused(options: Any) -> None:
+    with pytest.raises(TypeError, match=r"run\(yarpy\.ResourceFinder\(sys\.argv\[1:\]\)\)"):
+        Module().run(options)
 
 
 def test_configuration_that_fails_ends_it_before_it_begins(

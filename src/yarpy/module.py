@@ -127,6 +127,8 @@ class Module:
         `close`. Raises AddressError (a name is in use), NoNameServer.
         """
         resources = ResourceFinder() if resources is None else resources
+        if isinstance(resources, (str, list, tuple)):
+            raise TypeError("options are looked for: run(yarpy.ResourceFinder(sys.argv[1:]))")
         self.name = plain_text(resources.find("name") or self.name)
         with _signals(self.stop):
             if self.configure(resources) is False:
