@@ -124,7 +124,8 @@ def test_a_point_cloud(cli, writer):
         assert writer.wait_for_outputs(timeout=HANG)
         writer.write(cloud)
         process.wait_line("^<pointcloud xyz 2x1, 2 points>$", stream="out")
-    with cli.start("read", "--json", "/read/p", "/read/writer", "once") as process:
+    wait_until(lambda: not writer.outputs)
+    with cli.start("read", "--json", "/read/q", "/read/writer", "once") as process:
         assert writer.wait_for_outputs(timeout=HANG)
         writer.write(cloud)
         assert process.wait(HANG) == 0
