@@ -305,7 +305,8 @@ def _told(folder: Path, path: Path) -> tuple[dict[str, int], list[str]]:
     if found is None and path.is_dir():
         return test_all(folder, sorted(path.rglob("test_*.py")))
     counts, bad = found or ({}, [f"{path.relative_to(ROOT)} came to no end"])
-    print(".F"[bool(bad)], path.relative_to(ROOT), counts.get("tests", 0), *bad[:1], flush=True)
+    ran = f"{counts.get('tests', 0)}, {counts.get('skipped', 0)} skipped"
+    print(".F"[bool(bad)], path.relative_to(ROOT), ran, *bad[:1], flush=True)
     print(*bad[1:], sep="\n", end="\n" * bool(bad[1:]), flush=True)
     return counts, bad
 
