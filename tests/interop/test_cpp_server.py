@@ -33,7 +33,7 @@ def test_registration(cpp_names: CppYarp) -> None:
         offers = cpp_names.run("name", "get", "/ours", "offers").stdout
         assert "tcp" in offers.split() and "mcast" in offers.split()
         # The name is ours as long as we live; C++ would take it away in silence.
-        with pytest.raises(yarpy.AddressError, match="is open in this program"):
+        with pytest.raises(yarpy.AddressError, match="is in use by this program"):
             yarpy.Port("/ours")
     assert yarpy.query("/ours") is None
     assert line not in listing(cpp_names)

@@ -84,7 +84,7 @@ def test_ports_find_each_other_over_two_routers(near: ZenohNames, far: ZenohName
 def test_a_name_belongs_to_the_port_that_has_it(near: ZenohNames, far: ZenohNames) -> None:
     with yarpy.Port("/mine", names=near):
         wait_until(lambda: far.query("/mine"))
-        with pytest.raises(AddressError, match=r'"/mine" is open in this program'):
+        with pytest.raises(AddressError, match=r'"/mine" is in use by this program'):
             yarpy.Port("/mine", names=far)
 
 

@@ -77,7 +77,7 @@ def test_name_in_use_is_refused_with_who_has_it(
     names: LocalNames, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     with Port("/here", names=names) as port:
-        with pytest.raises(AddressError, match='"/here" is open in this program already: close'):
+        with pytest.raises(AddressError, match='"/here" is in use by this program itself: close'):
             Port("/here", names=names)
         monkeypatch.setattr(registration, "LOOP", AcceptLoop())  # as another program sees it
         with pytest.raises(AddressError, match=f'"/here" is in use by a port at {port.address}'):

@@ -175,7 +175,7 @@ class Registration:
         ours = is_local(known.host) and any(one.name == self.name for one in LOOP.entrances)
         if found == self.name and ours:
             raise AddressError(
-                f'"{self.name}" is open in this program already: close() that port first, or '
+                f'"{self.name}" is in use by this program itself: close() that port first, or '
                 "choose another name"
             )
         if found == self.name:
