@@ -32,4 +32,4 @@ def test_tables() -> None:
         }
         # One of ours, and one in C; which system call is made at once depends on who is quicker.
         assert "| link/" in functions
-        assert "' of 'list' objects |" in functions
+        assert "' of '_struct.Struct' objects |" in functions

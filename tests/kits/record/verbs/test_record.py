@@ -84,7 +84,7 @@ def test_a_duration_in_which_nothing_comes(cli, server) -> None:
 
 
 def test_a_port_of_which_nothing_comes(cli, out, names) -> None:
-    with cli.start("record", "/out", "/none", "/still", "-o", "y") as process:
+    with cli.start("record", "/out", "/none", "/still", "-o", "w") as process:
         with yarpy.Port("/still", names=names) as still:
             assert out.wait_for_outputs(timeout=HANG) and still.wait_for_outputs(timeout=HANG)
             out.write([1], wait=True)
