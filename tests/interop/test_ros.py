@@ -10,9 +10,9 @@ import time
 import pytest
 from support.cpp import CppYarp
 from support.lasted import lasted
-from support.port import addresses
+from support.port import addresses, free_block
 from support.process import Process
-from support.ros_graph import ros_graph
+from support.ros_graph import RosGraph, ros_graph
 from support.wait import HANG, wait_until
 
 import yarpy
@@ -45,6 +45,12 @@ def test_topics_of_cpp_are_known_to_the_master(
             wait_until(lambda node=node: graph.master.node(node) is None, HANG, node)
 
 
+def of_node(graph: RosGraph) -> dict[str, str]:
+    """The environment of a program with a node. Where it looks for a name server is none."""
+    said = {"ROS_MASTER_URI": graph.uri, "ROS_IP": "127.0.0.1"}
+    return {**os.environ, **said, "YARP_PORT_RANGE": str(free_block(200))}
+
+
 NODE = """
 import sys, time, yarpy
 from yarpy.peers.ros.node import Node
@@ -65,7 +71,7 @@ def test_a_node_that_is_told_to_end_leaves_nothing_at_the_master(
 ) -> None:
     """As roslaunch and systemd do it; its program closes nothing."""
     with ros_graph(tmp_path_factory.mktemp("ros")) as graph:
-        environment = {**os.environ, "ROS_MASTER_URI": graph.uri, "ROS_IP": "127.0.0.1"}
+        environment = of_node(graph)
         with subprocess.Popen(
             [sys.executable, "-c", NODE], env=environment, stdout=subprocess.PIPE, text=True
         ) as program:
@@ -81,7 +87,7 @@ def test_a_node_that_is_told_to_end_leaves_nothing_at_the_master(
 def test_a_stopped_subscriber_holds_up_nobody(tmp_path_factory: pytest.TempPathFactory) -> None:
     stopped = NODE.replace("/ending", "/stopped").replace("/news", "/pictures")
     with ros_graph(tmp_path_factory.mktemp("ros")) as graph:
-        environment = {**os.environ, "ROS_MASTER_URI": graph.uri, "ROS_IP": "127.0.0.1"}
+        environment = of_node(graph)
         with (
             Node("/eye", master=graph.uri) as eye,
             Node("/other", master=graph.uri) as other,
@@ -200,7 +206,7 @@ def test_a_node_that_was_killed_is_found_again_by_rospy(
 ) -> None:
     """Its program takes nothing back at the master, and has its name again."""
     with ros_graph(tmp_path_factory.mktemp("ros")) as graph:
-        environment = {**os.environ, "ROS_MASTER_URI": graph.uri, "ROS_IP": "127.0.0.1"}
+        environment = of_node(graph)
 
         def node(word: str) -> Process:
             return Process([sys.executable, "-c", AGAIN, word], env=environment)

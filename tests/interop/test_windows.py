@@ -43,6 +43,8 @@ def on_windows(home: Path, *words: str, server: str = "") -> Iterator[Process]:
     folder = windows.prepare()
     variables = {name: windows.path_of(home) for name in ("YARP_CONFIG_HOME", "YARP_DATA_HOME")}
     variables |= {"YARPY_SERVER": server} if server else {}
+    # Else a demo takes those where programs of other tests look for a name server.
+    variables["YARP_PORT_RANGE"] = str(free_block(200))
     environment = {**windows.environment(folder), **variables, "PYTHONUNBUFFERED": "1"}
     command = [*windows.interpreter(folder), *words]
     with Process(command, env=environment, cwd=windows.ROOT) as process:

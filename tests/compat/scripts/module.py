@@ -68,7 +68,7 @@ codes = []
 thread = threading.Thread(target=lambda: codes.append(module.runModule(rf)))
 thread.start()
 for _ in range(1000):
-    if yarp.Network.exists("/m/rpc") and module.count:
+    if module.count and yarp.Network.exists("/m/rpc"):  # in C++ not while the port is opened
         break
     time.sleep(0.01)
 client = yarp.RpcClient()
