@@ -135,12 +135,14 @@ def browser(chromium_url: str) -> Iterator[Browser]:
 
 
 def _of_one_that_left(complaint: str) -> bool:
-    """Return whether a connection failed to a server that is gone by now."""
-    found = re.search(r"net::ERR_.* \(\w+://([\d.]+):(\d+)", complaint)
+    """Return whether a connection failed to a server that is gone by now. Whatever name it has in
+    the browser, it was on this computer."""
+    found = re.search(r"net::ERR_.* \(\w+://([\w.]+):(\d+)", complaint)
     if found is None:
         return False
+    host = found[1] if found[1].replace(".", "").isdigit() else "127.0.0.1"
     with socket.socket() as probe:
-        return probe.connect_ex((found[1], int(found[2]))) != 0
+        return probe.connect_ex((host, int(found[2]))) != 0
 
 
 def _environment(home: Path) -> dict[str, str]:

@@ -57,7 +57,8 @@ def archive(pickle_: bytes, numbers: bytes, kind: int = zipfile.ZIP_STORED, **mo
             "version": b"3\n",
             **more,
         }.items():
-            file.writestr(f"archive/{name}", data)
+            # Not of now: what is made of a wrong file may depend on the letters of its time.
+            file.writestr(zipfile.ZipInfo(f"archive/{name}"), data, kind)
     return out.getvalue()
 
 
