@@ -5,7 +5,7 @@ import subprocess
 import sys
 
 import pytest
-from support.wait import wait_until
+from support.wait import HANG, wait_until
 
 from yarpy.kits.launch.supervise import process
 
@@ -61,3 +61,23 @@ def test_a_second_look_is_at_what_was_unclear_or_is_new() -> None:
         child.kill()
         child.wait()
     assert child.pid not in process.rescan(process.Scan(known, set())).found
+
+
+def test_one_that_is_just_becoming_a_program_is_waited_for(monkeypatch: pytest.MonkeyPatch) -> None:
+    """The system shows no environment for a moment, and other processes have none at all."""
+    monkeypatch.setattr(process, "_BEGINNING", 2 * HANG)  # this computer may be busy
+    child = subprocess.Popen(["sleep", "600"], env={**os.environ, process.MARK: "run/c"})
+    try:
+        wait_until(lambda: process.mark_of(child.pid) == "run/c")
+        mark_of, looks = process.mark_of, 0
+
+        def late(pid: int) -> str | None:
+            nonlocal looks
+            looks += pid == child.pid
+            return None if pid == child.pid and looks <= 3 else mark_of(pid)
+
+        monkeypatch.setattr(process, "mark_of", late)
+        assert process.members({}, {"run/c"}) == {child.pid: "run/c"}
+    finally:
+        child.kill()
+        child.wait()

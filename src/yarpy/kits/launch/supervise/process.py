@@ -9,7 +9,9 @@ from a later one with the same number by the moment of its start.
 from __future__ import annotations
 
 import os
+import sys
 import threading
+import time
 from collections.abc import Callable, Collection, Iterable, Mapping, Set
 from dataclasses import dataclass
 from pathlib import Path
@@ -17,7 +19,9 @@ from typing import Final
 
 MARK: Final = "YARPY_UP_PROGRAM"  # the variable that says which program a process is of
 _PROC: Final = Path("/proc")
-_LOOKS: Final = 6  # at all processes, while some of them end
+_LOOKS: Final = 6  # at all processes, while some of them end or begin
+_PAUSE: Final = 0.004  # seconds until the second look at one that begins; twice that each time
+_BEGINNING: Final = 2.0  # seconds in which a process gets its environment
 _ENVIRON: Final = 1 << 18  # bytes that are looked at
 _CHUNK: Final = 1 << 14  # ... of which most have less
 _TICKS: Final = os.sysconf("SC_CLK_TCK") if hasattr(os, "sysconf") else 100
@@ -143,15 +147,26 @@ def members(
     """Return the processes of programs, each with the mark of its program: those in `sessions`
     (by the number of the session), and those that have one of the `marks`. Not this process."""
     now = scan()
-    for _ in range(_LOOKS):
+    for number in range(_LOOKS):
         found, before = now.members(sessions, marks), now.unclear
         if found or not before:
             return found
         # One that ended between the list of all and the look at it may have begun another one.
         now = rescan(now)
         if now.unclear <= before:
-            break
+            if not any(map(_is_beginning, now.unclear)):
+                break
+            time.sleep(_PAUSE * 2**number)
     return now.members(sessions, marks)
+
+
+def _is_beginning(pid: int) -> bool:
+    """Return whether a process without an environment may be about to get one: it has just been
+    started, and is no thread of the system."""
+    process = look(pid)
+    if process is None or not process.alive or not process.memory or sys.platform != "linux":
+        return False
+    return time.clock_gettime(time.CLOCK_BOOTTIME) - process.start / _TICKS < _BEGINNING
 
 
 class Scanner:
