@@ -244,18 +244,25 @@ def test_clicks(browser: Browser) -> None:
         shows(page, RED, 0)
         shows(page, RED, 1)
         page.wait_for_selector("canvas.clicks")
-        box = page.locator("canvas").first.bounding_box()
-        assert box is not None
-        middle = box["x"] + box["width"] / 2, box["y"] + box["height"] / 2
-        scale = min(box["width"] / 100, box["height"] / 50)
-        page.mouse.click(middle[0] + 0.5 * scale, middle[1] + 0.5 * scale)
+
+        def at(x: float, y: float) -> tuple[float, float]:
+            """Where this place of the picture is by now: rates beside it may still move it."""
+            box = page.locator("canvas").first.bounding_box()
+            assert box is not None
+            scale = min(box["width"] / 100, box["height"] / 50)
+            left, top = box["x"] + box["width"] / 2, box["y"] + box["height"] / 2
+            return left + (x - 50) * scale, top + (y - 25) * scale
+
+        page.mouse.click(*at(50.5, 25.5))
         assert heard.read(timeout=HANG).value == [50, 25]
-        page.mouse.move(middle[0] - 40.4 * scale, middle[1] - 20.4 * scale)
+        page.mouse.move(*at(9.6, 4.6))
         page.mouse.down()
-        page.mouse.move(middle[0] + 10.6 * scale, middle[1] + 5.6 * scale)
+        page.mouse.move(*at(60.6, 30.6))
         page.mouse.up()
         assert list(heard.read(timeout=HANG).value) == [9, 4, 60, 30]
         page.locator("canvas").nth(1).click()  # nobody wants to know
+        box = page.locator("canvas").first.bounding_box()
+        assert box is not None
         page.mouse.click(box["x"] + box["width"] / 2, box["y"] + 1)  # beside the picture, if there
         assert here.ports[0].waiting == 0
         assert here.pictures[0].status()["others"] == 0
