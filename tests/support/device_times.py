@@ -28,12 +28,16 @@ def tables() -> str:
     """What was measured, then a table of calls and one of streams."""
     kept: dict[str, Any] = json.loads(KEPT.read_text(encoding="utf-8"))
     lines = [
-        f"C++ {version}: {each['date']}, {each['machine']}, CPython {each['python']}, the least "
-        f"disturbed of {each['rounds']} rounds, {each['calls']} calls each.  "
+        f"C++ {version}: {each['date']}, {each['machine']}, CPython {each['python']}, "
+        f"{_rounds(each['rounds'])}, {each['calls']} calls each.  "
         for version, each in kept.items()
     ]
     lines += ["", *_table(kept, "call", _call), "", *_table(kept, "age", _stream)]
     return "\n".join(lines) + "\n"
+
+
+def _rounds(count: int) -> str:
+    return f"the least disturbed of {count} rounds" if count > 1 else "one round"
 
 
 def _table(kept: dict[str, Any], figure: str, cell: Any) -> list[str]:
