@@ -36,7 +36,7 @@ from yarpy.data.python.array import array_of, scalar
 from yarpy.data.python.array import blocks as array_blocks
 from yarpy.data.python.loaded import loaded
 from yarpy.data.python.place import located
-from yarpy.data.reader import KEPT, SMALL, read_planned, read_small
+from yarpy.data.reader import KEPT, SMALL, read_fresh, read_planned
 from yarpy.data.sig.image import Image
 from yarpy.data.sig.vector import Vector
 from yarpy.data.stamp import Stamp
@@ -252,7 +252,7 @@ def decode(view: Buffer, question: Question | None = None) -> Any:
             return Vector.from_wire(view)
         if code in _READ_SMALL and len(view) <= SMALL:  # as nearly always, with a step less
             small = view if type(view) is bytes else bytes(view)
-            return read_small(Bottle, Property.from_bottle, small, Numbers.over)[0]
+            return read_fresh(Bottle, Property.from_bottle, small, Numbers.over)[0]
         return read_bottle(view)
     except DecodeError:
         other = older(view)
@@ -284,16 +284,16 @@ def decode_leading(buffer: bytes) -> tuple[Any, int] | None:
     if code - LIST in KEPT and count > 0:  # numbers alone, whose length their count says
         end = 8 + count * FIXED[code - LIST][1]
         return (decode(buffer[:end]), end) if 12 <= end <= len(buffer) else None
-    if code == LIST and count > 1:
+    if code == LIST and count > 0:
         planned = read_planned(Bottle, buffer, count)
         if planned is not None:
-            return planned
+            return planned if count > 1 else (planned[0][0], planned[1])
         if count == 4:  # which may be an Image or a Sound
             return None
     if len(buffer) >= description.SMALLEST and buffer.find(_KEY) >= 0:
         return None  # perhaps a description; `in` would try to make a number of the key first
     try:
-        found = read_small(Bottle, Property.from_bottle, buffer)
+        found = read_fresh(Bottle, Property.from_bottle, buffer)
     except DecodeError:
         return None
     if code != LIST or count != 1 or _read_i32(buffer, 8)[0] & GROUP_MASK:

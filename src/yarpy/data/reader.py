@@ -129,23 +129,32 @@ def read_planned(make_list: type[L], buffer: Buffer, count: int) -> tuple[L, int
 def read_small(
     make_list: type[L], make_dict: Callable[[L], Any], buffer: bytes, keep: Keep | None = None
 ) -> tuple[L, int]:
-    """The list that at most SMALL bytes begin with, and how many it takes; as `read_list`. What is
-    learned here of a message of plain numbers lets `read_planned` read the next one."""
-    size = len(buffer)
-    if size < 8:
-        raise Truncated(f"a Bottle takes at least 8 bytes, here are {size}", 8)
-    try:
+    """The list that at most SMALL bytes begin with, and how many it takes; as `read_list`."""
+    if len(buffer) >= 8:
         code, count = _read_pair(buffer)
-        planned = code == LIST and 0 < count <= _PLANNED
-        if planned:
+        if code == LIST:
             found = read_planned(make_list, buffer, count)
             if found is not None:
                 return found
-        items = make_list()
+    return read_fresh(make_list, make_dict, buffer, keep)
+
+
+def read_fresh(
+    make_list: type[L], make_dict: Callable[[L], Any], buffer: bytes, keep: Keep | None = None
+) -> tuple[L, int]:
+    """As `read_small`, for what `read_planned` has not read. What is learned here of a message of
+    plain numbers lets that read the next one."""
+    size = len(buffer)
+    if size < 8:
+        raise Truncated(f"a Bottle takes at least 8 bytes, here are {size}", 8)
+    items = make_list()
+    try:
+        code, count = _read_pair(buffer)
         kind = code & UNIT_MASK
         end = _read_items(buffer, 8, kind, count, 0, items, None, make_list, make_dict, keep)
     except struct_error:
         raise _beyond(size) from None
+    planned = code == LIST and 0 < count <= _PLANNED
     if planned and _NUMBERS.issuperset(map(type, items)):
         fresh = _Plan([INT32 if type(item) is int else FLOAT64 for item in items])
         if fresh.end == end:  # else there was an int of 64 bits

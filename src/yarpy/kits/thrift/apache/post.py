@@ -4,9 +4,9 @@
     thrift+http+compact+path.camera://HOST:9090   TCompactProtocol, at /camera
 
 Rules: h11 checks every byte that comes. A body is one message, without a frame. A server that ends
-the connection with its answer, as THttpServer does, is dialled anew for the next call,
-before anything of that has left. Of the response to a oneway call only the status is waited for,
-and what is wrong with it is logged: its caller is not there any more.
+the connection with its answer, as THttpServer does, is dialled anew for the next call, before
+anything of that has left. Of the response to a oneway call only the status is waited for, and what
+is wrong with it is logged: its caller is not there any more.
 """
 
 from __future__ import annotations
