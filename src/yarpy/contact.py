@@ -43,7 +43,8 @@ _IPV6_PORT = re.compile(r"^\[[0-9A-Fa-f:.%]+\]:\d+$")
 
 @dataclass(frozen=True, slots=True)
 class Contact:
-    """How to reach a port. `host` empty or `port` 0 mean: not known yet, ask a name service."""
+    """The address of a port and its carrier. An empty `host` or a `port` of 0 is not known yet: a
+    name service is asked."""
 
     carrier: str = "tcp"
     name: str = ""

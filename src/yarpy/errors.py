@@ -48,7 +48,7 @@ class UnknownName(YarpError, LookupError):
 
 
 class WrongPort(UnknownName):
-    """Where a name leads, another port listens: the entry of the name service is out of date.
+    """Another port listens at the address of a name: the entry of the name service is out of date.
 
     Start the program of that port again, or let `yarpy clean` take out what is no longer there.
     """

@@ -75,7 +75,7 @@ class ResourceFinder:
 
     @property
     def contexts(self) -> list[str]:
-        """Where files are looked for, in order of preference."""
+        """The contexts in which files are looked for, in order of preference."""
         return [*self._search.contexts]
 
     def find(self, key: str, default: Any = None) -> Any:
@@ -99,7 +99,8 @@ class ResourceFinder:
         return inner
 
     def file(self, name: str) -> Path | None:
-        """Where the file called `name`, or named by the option `name`, is found."""
+        """Return the path of the file called `name`, or named by the option `name`, if it is
+        found."""
         return self._search.find(name)
 
     def files(self, name: str) -> list[Path]:
@@ -107,16 +108,18 @@ class ResourceFinder:
         return self._search.find_all(name)
 
     def directory(self, name: str) -> Path | None:
-        """Where the directory called `name`, or named by the option `name`, is found."""
+        """Return the path of the directory called `name`, or named by the option `name`, if it is
+        found."""
         return self._search.find_directory(name)
 
     def home(self, context: str = "") -> Path:
-        """Where a program may keep files of this user in its context; not created here."""
+        """Return the folder for files of this user in the program's context; it is not created
+        here."""
         found = context or next(iter(self._search.contexts), "")
         return context_home(self._search.environment, found)
 
     def robot_home(self) -> Path:
-        """Where a program may keep files of this user for the robot; not created here."""
+        """Return the folder for files of this user for the robot; it is not created here."""
         return robot_home(self._search.environment, self._search.robot)
 
     def __repr__(self) -> str:

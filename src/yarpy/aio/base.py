@@ -140,7 +140,7 @@ class BasePort(Generic[P]):
 
     @property
     def contact(self) -> Contact:
-        """Where the port listens."""
+        """The address where the port listens."""
         return self.port.contact
 
     @property

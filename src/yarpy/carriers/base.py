@@ -46,7 +46,7 @@ ASKS_FOR_KEY = "perhaps it wants a key (auth.conf) or TLS, which this side does 
 
 @dataclass(frozen=True, slots=True)
 class Delivery:
-    """How messages are sent.
+    """The facts by which messages of a carrier are sent.
 
     lossy: a slow consumer misses messages; its writer never waits. backlog: messages that may be
     queued for such a reader, with `at_once` of at most `held` bytes. interval: minimum seconds
@@ -127,7 +127,7 @@ class Carrier:
 
     @classmethod
     def recognises(cls, first: bytes) -> int:
-        """How many of the `first` eight bytes identify our protocol; 0: it is not ours."""
+        """Return how many of the `first` eight bytes identify our protocol; 0 if it is not ours."""
         return len(cls.magic) if cls.magic and first.startswith(cls.magic) else 0
 
     # -- beginning --------------------------------------------------------------------------------

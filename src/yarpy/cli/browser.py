@@ -24,7 +24,8 @@ def show_page(port: BasePort, browser: bool = True) -> None:
 
 
 def url_of(address: str) -> str:
-    """Where browsers find a page of this program: by https if it takes nothing else."""
+    """Return the URL by which browsers find a page of this program: https if it takes nothing
+    else."""
     return f"http{'s' if required() else ''}://{address}/"
 
 

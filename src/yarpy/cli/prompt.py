@@ -40,7 +40,7 @@ def at_terminal() -> bool:
 
 
 def history_file(name: str) -> Path:
-    """Where the lines typed at the prompt called `name` (a port) are remembered."""
+    """Return the file in which the lines typed at the prompt called `name` (a port) are kept."""
     from yarpy.config.configuration import safe_name
     from yarpy.platform.folders import data_home
 

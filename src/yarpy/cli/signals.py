@@ -1,4 +1,4 @@
-"""How a command ends when somebody wants it to: by ^C, by SIGTERM, by the end of its terminal.
+"""The end of a command when somebody asks for it: by ^C, by SIGTERM, by the end of its terminal.
 
 Rules: the first signal is the exception `Interrupted` in the main thread, so `with` blocks close
 their ports and names are given back; what comes within two seconds is the same person pressing

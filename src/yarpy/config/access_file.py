@@ -53,7 +53,7 @@ def current() -> Access | None:
 
 
 def path(environment: Mapping[str, str]) -> Path:
-    """Where the file is, or would be."""
+    """Return the path of the file, whether it exists or not."""
     said = environment.get(SETTING)
     return Path(said).absolute() if said else folder(str(conf_directory(environment)), FILE)
 

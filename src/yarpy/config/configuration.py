@@ -1,4 +1,4 @@
-"""Where the name servers are, read from the same files and variables that C++ YARP uses.
+"""The addresses of the name servers, read from the same files and variables that C++ YARP uses.
 
 Rules: functions of an environment mapping and a directory, so that nothing here depends on the
 process it runs in. Nothing is printed.
@@ -72,7 +72,7 @@ class BrokenFile(AddressError):
 
     @property
     def reason(self) -> str:
-        """Which file, and what is wrong, for who writes the file anew."""
+        """The file and what is wrong with it, for a caller who writes the file anew."""
         return str(self.args[0])
 
     def __str__(self) -> str:

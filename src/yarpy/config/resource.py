@@ -31,7 +31,8 @@ from yarpy.platform.folders import (
 
 @dataclass(frozen=True)
 class Search:
-    """Where to look. The defaults are those of this process without a context.
+    """The places in which files are looked for. The defaults are those of this process without a
+    context.
 
     contexts: in order of preference. robot: "" means `YARP_ROBOT_NAME`, or `default`.
     near: directory of the main configuration file, if it was found in `directory` (case 2).
@@ -59,7 +60,7 @@ class Search:
         return [path for path in self.candidates(name) if path.is_file()]
 
     def candidates(self, name: str) -> Iterator[Path]:
-        """Where `name` may be, in order, whether it exists or not."""
+        """Return the paths that `name` may have, in order, whether they exist or not."""
         return map(Path, self._texts(name))
 
     def _texts(self, name: str) -> Iterator[str]:
@@ -110,12 +111,12 @@ def base_directories(environment: Mapping[str, str]) -> list[Path]:
 
 
 def context_home(environment: Mapping[str, str], context: str) -> Path:
-    """Where this user's files of a context are kept; not created here."""
+    """Return the folder of this user's files of a context; it is not created here."""
     return data_home(environment) / "contexts" / context
 
 
 def robot_home(environment: Mapping[str, str], robot: str = "") -> Path:
-    """Where this user's files of a robot are kept; not created here."""
+    """Return the folder of this user's files of a robot; it is not created here."""
     robot = robot or environment.get("YARP_ROBOT_NAME") or "default"
     return data_home(environment) / "robots" / robot
 

@@ -169,7 +169,7 @@ def _beyond(size: int) -> Truncated:
 
 
 class _Plan:
-    """How a list is taken apart whose elements have the tags INT32 and FLOAT64."""
+    """A layout by which a list is read whose elements have the tags INT32 and FLOAT64."""
 
     __slots__ = ("end", "tags", "unpack_from")
 
@@ -190,7 +190,8 @@ KEPT: Final = frozenset(FIXED) - {VOCAB32}
 
 
 def room_for(size: int) -> list[int] | None:
-    """How many elements a message of `size` bytes may still have; None if there cannot be too many.
+    """Return how many elements a message of `size` bytes may still have; None if there cannot be
+    too many.
 
     An element takes a byte on the wire, and forty here."""
     most = limits().elements

@@ -1,4 +1,4 @@
-"""Where does a message end that carries its length only inside itself?
+"""The end of a message that carries its length only inside itself.
 
 Replies and some messages come without any length. A Walker finds their end in a buffer that is
 still growing, without building objects. Rules: no byte is read twice, nothing is allocated on a

@@ -1,4 +1,4 @@
-"""Which carriers go over which transports, and why not.
+"""The combinations of carriers and transports, and why some are refused.
 
 Rules: pure, by the facts of both. A carrier that moves away from where it has greeted has a second
 transport, `over`.

@@ -60,7 +60,7 @@ class Timing:
 
     @property
     def due(self) -> float:
-        """When the next message must have come (time.monotonic)."""
+        """The time when the next message must have come (time.monotonic)."""
         gap = self.gap if self.rate else None
         return float("inf") if gap is None or self._silent else self._last + gap
 
@@ -121,7 +121,7 @@ class Timing:
 
 
 def age_of(envelope: str, clock: Callable[[], float] = time.time) -> float | None:
-    """How old a message is by its stamp; None if it has none, or that is no time of day."""
+    """Return the age of a message by its stamp; None if it has none, or that is no time of day."""
     if not envelope:
         return None
     try:

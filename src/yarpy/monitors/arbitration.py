@@ -76,7 +76,8 @@ class Competitor:
 
 @dataclass(frozen=True, slots=True)
 class Outcome:
-    """Which one may deliver (None: none), and the outputs of the active ones by source."""
+    """The competitor that may deliver (None: none), and the outputs of the active ones by
+    source."""
 
     winner: Competitor | None
     outputs: dict[str, float]

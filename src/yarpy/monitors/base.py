@@ -97,7 +97,7 @@ def _here(name: str, contexts: Sequence[str]) -> Iterable[Path]:
 
 @dataclass(frozen=True, slots=True)
 class Place:
-    """Where a monitor is attached: to messages from `source` to `target`, at one end of the
+    """The place where a monitor is attached: messages from `source` to `target`, at one end of the
     connection.
 
     `carrier` is the whole carrier string. For a port's own monitor, the peer's name and the carrier

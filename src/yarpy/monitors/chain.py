@@ -223,7 +223,7 @@ class Chain:
 
     @property
     def dropped(self) -> list[int]:
-        """How many messages each monitor has dropped."""
+        """The number of messages that each monitor has dropped."""
         return [tally.dropped for tally in self._tallies]
 
     @property

@@ -1,4 +1,4 @@
-"""Which of this computer's addresses to advertise.
+"""The choice of this computer's addresses to advertise.
 
 Rules: listing interfaces is best effort; where the system cannot, only loopback is known. Texts are
 plain: no zone (`%eth0`), and an IPv4 address seen through an IPv6 socket (`::ffff:10.0.0.1`) is

@@ -49,7 +49,7 @@ class NameClient(Protocol):
         ...
 
     def query(self, name: str) -> Contact | None:
-        """Where `name` is, or None when the service does not know it."""
+        """Return the address of `name`, or None when the service does not know it."""
         ...
 
     def announce(self, name: str, ok: bool = True) -> None:

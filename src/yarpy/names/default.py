@@ -1,4 +1,4 @@
-"""Which name service a port uses when it is given none.
+"""The name service that a port uses when it is given none.
 
 Rules: the innermost open `NameServer` or `LocalNames` of this process, else what `YARPY_SERVER` or
 the configuration files say. The files are read again at every lookup, so a server that was

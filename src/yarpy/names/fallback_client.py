@@ -65,7 +65,8 @@ class SeveralNames:
             raise missing
 
     def query(self, name: str) -> Contact | None:
-        """Where `name` is; NoNameServer if a service was down and no other knew the name."""
+        """Return the address of `name`. Raises NoNameServer if a service was down and no other knew
+        the name."""
         missing: NoNameServer | None = None
         for client in self.clients:
             try:

@@ -159,7 +159,7 @@ class NameService:
         return found(self.store.query(name, network), nested)
 
     def _strange(self, words: list[Any]) -> Contact | None:
-        """Where a name is that nobody has here."""
+        """Return the address of a name that nobody has here."""
         network, name = split_network(undecorate(_word(words, 1))[1])
         if self.elsewhere is None or network is not None:
             return None
@@ -169,7 +169,8 @@ class NameService:
         return self.elsewhere(name)
 
     def _held(self, words: list[Any], peer: str) -> Contact | None:
-        """Where a living port has the name that is registered once more on the same host.
+        """Return the address of a living port that has the name which is registered once more on
+        the same host.
 
         That port keeps it: the newcomer is told the number that is in use, cannot listen there, and
         says that there is an address conflict, as around the name server of C++.

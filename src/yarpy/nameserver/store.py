@@ -26,7 +26,7 @@ NOWHERE = Contact("tcp", "", "localhost", 10000)  # what a missing field of an a
 
 @dataclass(frozen=True, slots=True)
 class Limits:
-    """How much strangers may store."""
+    """The most that strangers may store."""
 
     names: int = 100_000
     name_bytes: int = 1000
@@ -155,7 +155,8 @@ class NameStore:
         return self._ports.get(name)
 
     def query(self, name: str, network: str | None = None) -> Contact | None:
-        """Where `name` is, or None. With `network`, the first of its `ips` beginning like that."""
+        """Return the address of `name`, or None. With `network`, the first of its `ips` beginning
+        like that."""
         port = self._ports.get(name)
         if port is None:
             return None

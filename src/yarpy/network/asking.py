@@ -25,7 +25,8 @@ from yarpy.scope import ASKING, Scope, apart, moment
 def query(
     name: str, names: NameClient | None = None, *, timeout: float | None = None
 ) -> Contact | None:
-    """Where the port `name` is, None if it is unknown. An address is returned as it is.
+    """Return the address of the port `name`, None if it is unknown. An address is returned as it
+    is.
 
     Raises NoNameServer, also for one that has not answered within `timeout` seconds, else 3.
     """

@@ -1,4 +1,5 @@
-"""Which registered port `/host:port/` means, as ports call a peer that was dialled by address.
+"""The registered port that `/host:port/` stands for, as ports call a peer that was dialled by
+address.
 
 Rules: pure. An address on the loopback is meant as seen from the port that dialled it. Only names
 with that very address count; where there are several, which may be names of ports that have gone,

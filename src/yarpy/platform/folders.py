@@ -89,7 +89,8 @@ def data_directories(environment: Mapping[str, str], platform: str = sys.platfor
 
 
 def _roaming(environment: Mapping[str, str]) -> str:
-    """Where programs of Windows keep what goes along with a user to another computer."""
+    """Return the folder in which programs of Windows keep what goes along with a user to another
+    computer."""
     known = environment.get("APPDATA")
     return known or os.path.join(home_directory(environment, "win32"), "AppData", "Roaming")
 

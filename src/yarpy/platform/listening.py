@@ -1,4 +1,4 @@
-"""Which process listens to which TCP port of this computer.
+"""The process that listens to a TCP port of this computer.
 
     Windows         every user may ask that of all processes
     Linux, macOS    nobody says it here: /proc has that of our own processes, and more

@@ -55,7 +55,7 @@ class BasePort:
 
     @property
     def contact(self) -> Contact:
-        """Where the port listens."""
+        """The address where the port listens."""
         return self._hub.contact
 
     @property

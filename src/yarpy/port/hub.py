@@ -149,7 +149,7 @@ class Hub:
 
     @property
     def contact(self) -> Contact:
-        """Where the port listens."""
+        """The address where the port listens."""
         return self.registration.contact
 
     @property

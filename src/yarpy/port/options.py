@@ -16,7 +16,7 @@ from yarpy.port.connection import ConnectionEvent
 
 
 class PortOptions(TypedDict, total=False):
-    """How a port is opened.
+    """The options with which a port is opened.
 
     names: a name client, None for the default (see `yarpy.NameServer`, `yarpy.LocalNames`).
     tcp_port: the number to listen on, 0 to let the name server or the system choose.

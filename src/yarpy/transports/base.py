@@ -128,9 +128,9 @@ class Transport:
         raise NotImplementedError
 
     def taken(self, sent: int, received: int) -> tuple[int, bool] | None:
-        """How many bytes the peer's system has confirmed, and whether the peer has hung up as one
-        does that has read them all; None: nobody can say. `sent`, `received`: so many went and came
-        here."""
+        """Return how many bytes the peer's system has confirmed, and whether the peer has hung up
+        as one does that has read them all; None: nobody can say. `sent`, `received`: so many went
+        and came here."""
         return None
 
     def failed(self, error: OSError) -> None:

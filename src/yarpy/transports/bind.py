@@ -1,4 +1,5 @@
-"""Where ports listen: `YARPY_BIND`, in the environment of the program that opens them.
+"""The addresses where ports listen: `YARPY_BIND`, in the environment of the program that opens
+them.
 
 (nothing)      on every IPv4 address of this computer, as C++ YARP
 local          on the loopback: reachable from this computer only

@@ -37,7 +37,7 @@ class Inbox(ObjectTransport):
 
     @property
     def waiting(self) -> int:
-        """How many messages wait to be read."""
+        """The number of messages that wait to be read."""
         return self._inbox.qsize()
 
     def put(self, item: Any, most: int) -> None:

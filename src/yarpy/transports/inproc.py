@@ -24,7 +24,7 @@ _END = object()
 
 
 class Meeting:
-    """Where ends wait for each other; one per process."""
+    """The ends that wait for each other; one such table per process."""
 
     def __init__(self) -> None:
         self._waiting: dict[tuple[int, int], InprocTransport] = {}

@@ -20,7 +20,7 @@ CONNECT_TIMEOUT: Final = 10.0  # seconds, as C++ YARP
 
 @dataclass(frozen=True, slots=True)
 class Elsewhere:
-    """Where the two ends of a connection meet that have greeted over `through`.
+    """The meeting place of the two ends of a connection that have greeted over `through`.
 
     `listen`: we accepted that connection. `port`, `group`: what the carrier says about the place
     (`wire/effects.py`, Open). `timeout`: seconds.
@@ -34,7 +34,7 @@ class Elsewhere:
 
 
 class Opener:
-    """How a transport is opened."""
+    """The facts of a transport, and the ways in which it is opened."""
 
     name: ClassVar[str] = ""
     hosts: ClassVar[str] = ""

@@ -318,7 +318,7 @@ def client_context() -> ssl.SSLContext:
 
 
 def _age(where: Path) -> tuple[float, ...]:
-    """When each file changed, 0 for a missing one."""
+    """Return the time when each file changed, 0 for a missing one."""
     names = ("cert.pem", "key.pem", "ca.pem")
     files = [where / name for name in names]
     return tuple(file.stat().st_mtime if file.is_file() else 0.0 for file in files)

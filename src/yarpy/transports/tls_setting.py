@@ -40,7 +40,7 @@ def mutual() -> bool:
 
 
 def folder() -> Path:
-    """Where the certificates are: beside `yarp.conf`."""
+    """Return the folder of the certificates: beside `yarp.conf`."""
     said = os.environ.get("YARPY_TLS_DIR")
     return Path(said) if said else conf_directory(os.environ) / "tls"
 

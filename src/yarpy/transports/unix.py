@@ -30,7 +30,8 @@ _SIOCOUTQ = 0x5411  # of Linux: what was sent, and not read
 
 
 def runtime_directory() -> Path:
-    """Where C++ YARP keeps its sockets: $YARP_RUNTIME_DIR, $XDG_RUNTIME_DIR/yarp, or below /tmp."""
+    """Return the folder of C++ YARP's sockets: $YARP_RUNTIME_DIR, $XDG_RUNTIME_DIR/yarp, or below
+    /tmp."""
     own = os.environ.get("YARP_RUNTIME_DIR")
     if own:
         return Path(own)

@@ -104,7 +104,7 @@ class Assembler:
 
 
 def announced(piece: Buffer) -> int:
-    """How long the message that begins with `piece` says it is."""
+    """Return the length of the message that begins with `piece`, as it says itself."""
     if bytes(piece[: len(INDEX)]) != INDEX or len(piece) < _INDEX_HEAD:
         return len(piece)
     count, replies = piece[8], piece[9]

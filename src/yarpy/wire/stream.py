@@ -128,7 +128,7 @@ class ByteStream:
     # -- the driver's side ------------------------------------------------------------------------
 
     def get_buffer(self) -> memoryview:
-        """Where the next bytes go; never empty."""
+        """Return the memory for the next bytes; never empty."""
         if self.big is not None:
             return self.big[self._big_filled :]
         if self.head == self.tail and self.mark < 0:

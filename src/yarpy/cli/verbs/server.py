@@ -62,7 +62,7 @@ ANY_NAME: Final = '"..."'  # as it is printed: the server chooses
 
 @dataclass(frozen=True)
 class Decision:
-    """Where to serve, and whether to store that."""
+    """The address where to serve, and whether to store it."""
 
     server: Server
     store: bool
@@ -78,7 +78,8 @@ def decide(
     write: bool = False,
     environment: Mapping[str, str] = os.environ,
 ) -> Decision:
-    """Where to serve, from the options and what is stored. Raises AddressError when they differ."""
+    """Return where to serve, from the options and what is stored. Raises AddressError when they
+    differ."""
     from yarpy.config.configuration import Server, default_port, server_file
     from yarpy.names.address import is_local, outward_address
     from yarpy.transports.bind import listening_host

@@ -49,14 +49,14 @@ class Tally:
         return passed / self.messages if self.messages else 0.0
 
     def line(self) -> str:
-        """How it went, per second."""
+        """Return the rates of the time measured, in one line."""
         passed = max(time.perf_counter() - self.started, 1e-9)
         megabits = self.bytes * 8e-6 / passed
         rate = self.messages / passed
         return f"{megabits:.4g} Mb/s, {rate:.4g} btl/s, {self.period:.4g} mean period (s)"
 
     def total(self) -> str:
-        """How it went, in all."""
+        """Return the totals of the time measured, in one line."""
         return (
             f"{self.bytes / 1e6:.6g} total MB received,  {self.messages} total bottles received, "
             f"{self.period:.4g} mean period (s)"

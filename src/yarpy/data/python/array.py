@@ -1,4 +1,4 @@
-"""Which message a bare numpy array is, or one of a library that shares memory with it.
+"""The message that a bare numpy array becomes, or an array of a library that shares memory with it.
 
     1-D float64 float32 int64 int32 int16 int8    list of that kind (a Vector, for floats)
     2-D float64                                   Matrix

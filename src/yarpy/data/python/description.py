@@ -43,7 +43,7 @@ def described(elements: Buffer) -> bytes:
 
 
 def place(view: Buffer) -> int:
-    """Where the description of a message begins; 0 if there is none."""
+    """Return the byte at which the description of a message begins; 0 if there is none."""
     size = len(view)
     if size < SMALLEST:
         return 0

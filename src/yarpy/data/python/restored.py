@@ -158,7 +158,7 @@ class _Reading:
         return _own(word).from_wire(self._view[at - 4 : end]), end
 
     def _end(self, pos: int) -> int:
-        """Where a list ends that begins at `pos`."""
+        """Return the byte at which the list that begins at `pos` ends."""
         rest = self._view[pos:]
         walker = Walker(len(rest))
         walker.advance(rest)

@@ -157,7 +157,8 @@ class Extent:
         self._in_scan = False
 
     def advance(self, data: bytearray) -> int:
-        """Where the file ends; 0: not in these bytes; -1: not a JPEG file, or a broken one."""
+        """Return the byte at which the file ends; 0: not in these bytes; -1: not a JPEG file, or a
+        broken one."""
         if self._at == 0:
             if not _SOI.startswith(data[:2]):
                 return -1

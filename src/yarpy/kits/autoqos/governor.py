@@ -118,7 +118,7 @@ class Governor:
     # -- what there is ----------------------------------------------------------------------------
 
     def _sort(self, snapshot: Snapshot) -> None:
-        """Which connections each rule is about."""
+        """Find the connections that each rule is about."""
         self._groups = {rule: [] for rule in self._rules.rules}
         for pair, flow in snapshot.flows.items():
             found = self._rules.of(flow.source, flow.target) if flow.target else []

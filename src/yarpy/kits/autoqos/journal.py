@@ -24,7 +24,7 @@ NAME: Final = "autoqos.journal"
 
 
 def path() -> Path:
-    """Where the journal of this user is."""
+    """Return the path of this user's journal."""
     return data_home(os.environ) / NAME
 
 

@@ -89,7 +89,8 @@ def _are_counted(pairs: list[Pair], flows: dict[Pair, Flow]) -> bool:
 
 
 def _counted(pairs: list[Pair], looks: list[dict[Pair, Flow]]) -> tuple[int, int]:
-    """How many messages missed their deadline between the first look and the last, of how many."""
+    """Return how many messages missed their deadline between the first look and the last, and of
+    how many."""
     missed = came = 0
     if len(looks) < 2:
         return missed, came

@@ -1,4 +1,4 @@
-"""How values are encoded in requests and replies of devices: numbers, pairs, words, lists.
+"""The encoding of values in requests and replies of devices: numbers, pairs, words, lists.
 
     read(elements)      the value of a request's elements; Refused if there is none
     read_all(element)   the values of a list, one for each joint
@@ -223,7 +223,7 @@ class Fault(Kind):
 
 
 class JointType(Kind):
-    """How a joint moves: a word in programs, a number on the wire."""
+    """The type of a joint: a word in programs, a number on the wire."""
 
     words = {"revolute": "atrv", "prismatic": "atpr", "unknown": "unkn"}
 

@@ -169,7 +169,7 @@ def _waiting(pair: Pair) -> int:
 
 
 def _taken(case: Case, target: str) -> int | None:
-    """How many messages of all its connections a program has taken between the looks."""
+    """Return how many messages of all its connections a program has taken between the looks."""
     total, waiting, known = 0, 0, False
     for (source, other), flow in case.now.flows.items():
         if other != target or flow.receiver is None:

@@ -127,7 +127,7 @@ def limit(pid: int, name: str) -> int | None:
 
 
 def open_files(pid: int) -> int | None:
-    """How many file descriptors it has."""
+    """Return the number of file descriptors that a process has open; None if nobody can say."""
     try:
         return len(os.listdir(PROC / str(pid) / "fd"))
     except OSError:

@@ -130,7 +130,7 @@ class Tee:
 
 
 class NullSink:
-    """Where messages go while there is no file."""
+    """A sink that throws messages away, while there is no file."""
 
     path = Path()
     size = 0

@@ -52,7 +52,7 @@ class Board(Generic[J]):
             return [joint.position for joint in joints]
 
     def timestamps(self) -> list[float]:
-        """When the encoders were last read."""
+        """Return the times when the encoders were last read."""
         return [self._time] * len(self.axis_names)
 
     def encoder_speeds(self) -> list[float]:

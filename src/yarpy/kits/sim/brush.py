@@ -44,7 +44,7 @@ class Brush:
         self._texels = np.empty(size, "u4")
 
     def places(self, matrix: Array, box: Box) -> Array:
-        """Where on a surface the pixels of a box are: u, v, and one over the depth."""
+        """Return where on a surface the pixels of a box are: u, v, and one over the depth."""
         import numpy as np
 
         high, wide = box.bottom - box.top, box.right - box.left

@@ -36,7 +36,7 @@ _H = 1e-4  # seconds, for the change of a speed
 
 @dataclass(frozen=True, slots=True)
 class Pose:
-    """Where a frame is: `rotation` converts its vectors to world vectors."""
+    """The pose of a frame: `rotation` converts its vectors to world vectors."""
 
     rotation: Rotation
     position: Vector
@@ -53,7 +53,8 @@ class Inertia:
 
 
 def eye_pose(angles: Sequence[float], side: Side) -> Pose:
-    """Where an eye is, with the six joints at `angles` (degrees); its frame is a camera's."""
+    """Return the pose of an eye, with the six joints at `angles` (degrees); its frame is a
+    camera's."""
     head = _chain(angles)[-1]
     tilt, version, vergence = angles[3:6]
     left = side == "left"
@@ -64,7 +65,7 @@ def eye_pose(angles: Sequence[float], side: Side) -> Pose:
 
 
 def imu_pose(angles: Sequence[float]) -> Pose:
-    """Where the inertial unit is: x forward, y left, z up when the head is upright."""
+    """Return the pose of the inertial unit: x forward, y left, z up when the head is upright."""
     head = _chain(angles)[-1]
     return Pose(head.rotation, _beyond(head, IMU))
 
@@ -102,7 +103,8 @@ def _beyond(frame: Pose, place: Vector) -> Vector:
 
 
 def _imu_velocity(angles: Sequence[float], speeds: Sequence[float]) -> tuple[Vector, Vector]:
-    """How fast the inertial unit turns (rad/s) and moves (m/s), in the world."""
+    """Return the angular velocity (rad/s) and the velocity (m/s) of the inertial unit, in the
+    world."""
     first, second, third = frames = _chain(angles)
     place = _beyond(third, IMU)
     axes = (

@@ -21,7 +21,7 @@ _SLOW = 1e-3  # degrees per second at which friction holds an idle joint
 
 
 class Joint:
-    """Where an axis is (`position`), how fast it moves, and the reference that it follows."""
+    """The position of an axis (`position`), its velocity, and the reference that it follows."""
 
     def __init__(self, axis: Axis, position: float = 0.0) -> None:
         self.axis = axis

@@ -70,7 +70,7 @@ def around(one: Box, other: Box) -> Box:
 
 @dataclass(frozen=True, slots=True)
 class Spans:
-    """Which pixels show each surface: one span per row, as surfaces are convex.
+    """The pixels that show each surface: one span per row, as surfaces are convex.
 
     left, right: its first pixel and the one after its last, (n, height) int16. boxes: one for each
     surface, empty if it is not in the picture.
@@ -124,7 +124,8 @@ class Lens:
         return found
 
     def spans(self, inverses: Array) -> Spans:
-        """Where surfaces are visible, given the inverses of their matrices (n, 3, 3).
+        """Return the pixels where surfaces are visible, given the inverses of their matrices (n, 3,
+        3).
 
         A pixel (x, y) is on a surface if 0 <= a <= 1 and 0 <= b <= 1: four inequalities, linear
         in x.

@@ -50,7 +50,7 @@ class Ball:
     bounce: float = 0.5  # seconds from bounce to bounce
 
     def place(self, time: float) -> Vector:
-        """Where its centre is."""
+        """Return the centre of the ball."""
         turn, fall = 2 * pi * (time / self.lap % 1), time / self.bounce % 1
         height = 9.81 / 2 * self.bounce**2 * fall * (1 - fall)
         x = self.centre[0] - self.reach[0] * cos(turn)
@@ -58,7 +58,7 @@ class Ball:
         return x, y, self.ground + self.radius + height
 
     def axis(self, time: float) -> Vector:
-        """Where the middle of the first colour points."""
+        """Return the direction of the middle of the first colour."""
         turn = 2 * pi * (time / 1.7 % 1)
         return cos(turn), 0.4 * sin(turn), 0.9 * sin(turn)
 

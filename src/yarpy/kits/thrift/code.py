@@ -72,7 +72,7 @@ class Code:
     # -- types ------------------------------------------------------------------------------------
 
     def annotation(self, type_: TypeText, nested: bool = False) -> str:
-        """How a type is written in Python."""
+        """Return the type as it is written in Python."""
         found = self._annotation(type_)
         _, what = self.interface.resolve(type_)
         if nested and isinstance(what, StructText) and external(what) is None:

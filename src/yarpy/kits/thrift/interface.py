@@ -433,7 +433,8 @@ def _check_method(
 def _check_size(
     interface: Interface, struct: StructText, known: dict[int, int], chain: list[int]
 ) -> int:
-    """How many values a struct begins with, those of structs within too, if it is not endless."""
+    """Return how many values a struct begins with, those of structs within too. Raises where it is
+    endless."""
     from yarpy.limit import THRIFT_VALUES
 
     key = id(struct)

@@ -265,7 +265,7 @@ def is_enum(kind: Kind) -> bool:
 
 
 def flat(kind: Kind) -> int:
-    """How many elements of a Bottle a value takes where it stands."""
+    """Return how many elements of a Bottle a value takes that is not in a list of its own."""
     if is_struct(kind):
         found: int = kind._flat()  # type: ignore[union-attr]
         return found

@@ -136,7 +136,7 @@ class Struct:
 
     @classmethod
     def _flat(cls) -> int:
-        """How many elements of a Bottle it takes."""
+        """Return how many elements of a Bottle it takes."""
         found: int | None = cls.__dict__.get("_flat_")
         if found is None:
             if cls.__dict__.get("_counting_"):

@@ -145,7 +145,7 @@ class Panel:
         return f"{line}; there is {', '.join(others)} (yarpy panel {others[0]})"
 
     def _server(self) -> tuple[str, int] | None:
-        """Where all ports are listed, if that is a port."""
+        """Return the address of the server that lists all ports, if that is a port."""
         names = self._names
         if not isinstance(names, YarpNameClient):
             return None

@@ -140,7 +140,8 @@ class Clock:
         self._last = -math.inf
 
     def place(self, arrived: float, stamp: float | None) -> float:
-        """When a message happened that came at `arrived`; never before the one before it."""
+        """Return the time when a message happened that came at `arrived`; never before the one
+        before it."""
         moment = arrived
         if stamp is not None and math.isfinite(stamp):
             if not abs(stamp + self._ahead - arrived) < TRUST:

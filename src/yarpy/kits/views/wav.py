@@ -29,7 +29,7 @@ class WavWriter:
 
     @property
     def seconds(self) -> float:
-        """How long the sound is."""
+        """The length of the sound, seconds."""
         return self.length / self.frequency if self.frequency else 0.0
 
     def write(self, sound: yarpy.Sound) -> None:

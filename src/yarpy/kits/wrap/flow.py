@@ -58,8 +58,8 @@ class Outlets:
         self._send_now(value)
 
     def _to(self, publisher: Publisher, shape: Shape) -> Callable[[Any], None]:
-        """How a single value goes to a single middleware: what is the same for each is looked up
-        once."""
+        """Return the function that sends a single value to a single middleware: what is the same
+        for each value is looked up once."""
         exact, dump, publish, source = shape.exact, shape.dump, publisher.publish, self._source
         number, now = self._count.__next__, time.time
 
@@ -255,7 +255,8 @@ class Inlets:
 
 
 def _late(found: Sequence[Received]) -> int | None:
-    """Which of several values is of an earlier call than the others; None if all are of one."""
+    """Return the index of a value that is of an earlier call than the others; None if all are of
+    one."""
     times = [one.time or 0.0 for one in found]  # counts begin again with a program
     newest = max(times)
     return next((index for index, time_ in enumerate(times) if time_ != newest), None)

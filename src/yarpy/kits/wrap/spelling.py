@@ -199,7 +199,7 @@ def question(name: str, args: list[Any], kwargs: dict[str, Any]) -> list[Any]:
 
 
 def failure(found: Failure) -> Bottle:
-    """How a server of YARP says that something went wrong."""
+    """Return the answer by which a server of YARP says that something went wrong."""
     return raised(found.type, found.text)
 
 

@@ -1,4 +1,5 @@
-"""What type checkers see of a decorated method: the method, whose calls may also have a `timeout`.
+"""The types that type checkers see of a decorated method: the method, whose calls may also have a
+`timeout`.
 
 Rules: Protocols and aliases only; when a program runs, a decorated function is a function.
 """

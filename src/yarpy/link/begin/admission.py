@@ -108,7 +108,7 @@ class Admission:
 
 
 class Gate:
-    """How a port finds out what a peer may do.
+    """The rules by which a port finds the rights of a peer.
 
     `asks_names`: peers that come in TLS are asked for a certificate.
     """

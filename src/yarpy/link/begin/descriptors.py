@@ -40,7 +40,7 @@ class Descriptors:
         return True
 
     def _room(self) -> int:
-        """How many may be taken without looking again."""
+        """Return how many descriptors may be taken without looking again."""
         most = allowed()
         if most is None:
             return 1 << 20
@@ -50,12 +50,12 @@ class Descriptors:
 
 
 def reserve(most: int) -> int:
-    """How many of `most` descriptors are the program's."""
+    """Return how many of `most` descriptors are the program's."""
     return max(LEAST, most // SHARE)
 
 
 def allowed() -> int | None:
-    """How many descriptors this process may have; None: nobody knows."""
+    """Return how many descriptors this process may have; None if nobody knows."""
     if sys.platform == "win32":
         return None
     try:
@@ -67,7 +67,7 @@ def allowed() -> int | None:
 
 
 def used(most: int) -> int:
-    """How many it has."""
+    """Return how many descriptors this process has, `most` where not one is left for looking."""
     for folder in ("/proc/self/fd", "/dev/fd"):
         try:
             return len(os.listdir(folder)) - 1  # without that of the listing

@@ -21,7 +21,7 @@ SHARE: Final = 4  # an address has a quarter
 
 
 def connections() -> int:
-    """How many connections a port serves, as the environment says now."""
+    """Return how many connections a port serves, as the environment says now."""
     return max(1, number(SETTING, DEFAULT))
 
 

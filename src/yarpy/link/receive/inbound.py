@@ -137,7 +137,7 @@ class Inbound:
 
     @property
     def wanted(self) -> Qos | None:
-        """When messages should come, None if nothing was said."""
+        """The timing that messages should have, None if nothing was said."""
         return None if self.timing is None else self.timing.wanted
 
     def _missed(self, lateness: float, silent: bool) -> None:

@@ -70,7 +70,7 @@ class Confirmation:
         return Fate(came, 0, left - came)
 
     def _behind(self, left: int, taken: int) -> int:
-        """How many of `left` messages do not end within so many bytes."""
+        """Return how many of `left` messages do not end within so many bytes."""
         ends = self.ends
         behind = len(ends) - bisect_right(ends, taken)
         if ends and behind == len(ends) < left:  # further back than we remember: by their size

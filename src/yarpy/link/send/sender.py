@@ -42,7 +42,7 @@ LETTING_GO: Final = 0.3  # seconds for whoever is at work on a connection to mee
 
 
 class Sent(Enum):
-    """How much of a message has left, or is about to."""
+    """The part of a message that has left, or is about to."""
 
     NOTHING = auto()
     PART = auto()  # the rest has to follow before anything else

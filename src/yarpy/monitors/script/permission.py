@@ -1,4 +1,5 @@
-"""Which scripts may run: `YARPY_SCRIPTS`, in the environment of the program that owns the port.
+"""The permission to run scripts: `YARPY_SCRIPTS`, in the environment of the program that owns the
+port.
 
     (nothing)   those that the program itself requests (Port.connect, Port.attach)
     network     also those requested over the network: a sender's carrier string, `add` and `atch`
@@ -32,7 +33,7 @@ def granted(word: str) -> bool:
 
 
 def look_for(place: Place, file: str, context: str) -> Iterator[Path]:
-    """Where a script may be. Raises LocalProtocolError if it must not run."""
+    """Return the paths that a script may have. Raises LocalProtocolError if it must not run."""
     if not place.foreign:
         return iter(place.look(file, [context] if context else []))
     if not (granted(NETWORK) or place.scripts):

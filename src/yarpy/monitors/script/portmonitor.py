@@ -196,7 +196,7 @@ class PortMonitor:
             return self._current().parameters()
 
     def state(self) -> dict[str, Any]:
-        """Which script runs, and with which constraint."""
+        """Return the script that runs, and its constraint."""
         constraint = self.control.get_constraint()
         return {"script": str(self._path), **({"constraint": constraint} if constraint else {})}
 

@@ -177,7 +177,7 @@ class PythonScript:
 
 
 def _taken(callback: Callback) -> int | None:
-    """How many positional arguments a function takes; None if any number, or unknown."""
+    """Return how many positional arguments a function takes; None if any number, or unknown."""
     try:
         parameters = inspect.signature(callback).parameters.values()
     except (TypeError, ValueError):

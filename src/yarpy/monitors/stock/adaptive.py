@@ -141,8 +141,8 @@ class Adaptive:
         return message.replaced(_reduced(image, self._scale)), whole // self._scale**2
 
     def _scale_for(self, whole: int) -> int:
-        """How much smaller an image of `whole` bytes is to be; a finer one needs more room than
-        it takes to keep it."""
+        """Return the factor by which an image of `whole` bytes is to be made smaller; a finer one
+        needs more room than it takes to keep it."""
         budget, scale = self._budget, 1
         while scale < COARSEST and whole / scale**2 > budget * (0.8 if scale < self._scale else 1):
             scale *= 2

@@ -1,4 +1,4 @@
-"""What both carriers of MPI have in common: how two programs find each other over TCP, and what
+"""The common part of both carriers of MPI: how two programs find each other over TCP, and what
 tells that one of them has died, as MPI does not.
 
 Rules: C++ hangs up once both have met in MPI. Two programs of yarpy stay on the line: each says a

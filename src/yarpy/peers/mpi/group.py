@@ -37,7 +37,7 @@ class Member:
 
     @property
     def size(self) -> int:
-        """How many programs there are, with this one."""
+        """The number of programs, with this one."""
         count: int = self._comm.Get_size()
         return count
 
@@ -97,7 +97,7 @@ class Group:
 
     @property
     def size(self) -> int:
-        """How many readers there are."""
+        """The number of readers."""
         return len(self._lines)
 
     def join(self, place: str, line: Line) -> None:

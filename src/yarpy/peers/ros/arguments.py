@@ -1,4 +1,4 @@
-"""What roslaunch and rosrun say to a node of ROS 1 on the command line of its program.
+"""The words that roslaunch and rosrun give to a node of ROS 1 on the command line of its program.
 
     __name:=left  __ns:=/robot  chatter:=/news  _gain:=2.5
 

@@ -89,7 +89,8 @@ class RosDelegate:
         self._work.put(("gone", name))
 
     def query(self, name: str) -> Contact | None:
-        """Where the node or service of that name is; None if the master knows none, or is away."""
+        """Return the address of the node or service of that name; None if the master knows none, or
+        is away."""
         if not name.startswith("/") or time.monotonic() < self._away:
             return None
         try:

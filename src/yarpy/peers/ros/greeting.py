@@ -96,7 +96,8 @@ def check_answer(fields: Header, kind: Any, what: str) -> None:
 
 
 def mismatch(fields: Header, kind: Any) -> str:
-    """How the type that a peer names differs from ours; "" if it does not."""
+    """Return a text that says how the type that a peer names differs from ours; "" if it does
+    not."""
     theirs = fields.get("md5sum", ANY)
     if kind is None or theirs in (ANY, kind_md5sum(kind)):
         return ""
@@ -169,7 +170,7 @@ def full_text(kind: Any) -> str:
 
 
 def need(fields: Header, *keys: str) -> str:
-    """Which of these fields is missing; "" if none is."""
+    """Return the first of these fields that is missing; "" if none is."""
     return next((key for key in keys if key not in fields), "")
 
 

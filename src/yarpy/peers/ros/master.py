@@ -41,7 +41,7 @@ VARIABLE: Final = "ROS_MASTER_URI"
 
 @dataclass(frozen=True, slots=True)
 class Uri:
-    """Where a server of XML-RPC, or a service, listens."""
+    """The address of a server of XML-RPC, or of a service."""
 
     host: str
     port: int
@@ -118,11 +118,12 @@ class RosMaster:
         return publishers, subscribers, services
 
     def node(self, name: str) -> Uri | None:
-        """Where a node answers; None if the master knows none of that name. Raises as `call`."""
+        """Return the address of a node; None if the master knows none of that name. Raises as
+        `call`."""
         return self._look_up("lookupNode", name, "http")
 
     def service(self, name: str, timeout: float | None = None) -> Uri | None:
-        """Where a service listens; None if there is none. Raises as `call`."""
+        """Return the address of a service; None if there is none. Raises as `call`."""
         return self._look_up("lookupService", name, "rosrpc", timeout)
 
     def _look_up(

@@ -79,7 +79,7 @@ class _Host:
 
 @dataclass(slots=True)
 class NodeAddress:
-    """Where a node is: its name, the master, and its addresses."""
+    """The address of a node: its name, the master, and its addresses."""
 
     node: str
     master: RosMaster
@@ -257,7 +257,7 @@ class Membership:
         return found
 
     def due(self) -> float:
-        """When to look again, as time.monotonic has it, if nothing happens before."""
+        """Return the time to look again, as time.monotonic has it, if nothing happens before."""
         hub = self.hub
         if hub is None or hub.life.closing or self._closed:
             return inf
@@ -375,7 +375,7 @@ def _host(uri: str) -> str:
 
 
 def _place(found: object) -> Uri:
-    """Where a publisher says that its topic is. Raises AddressError."""
+    """Return the address that a publisher gives for its topic. Raises AddressError."""
     if isinstance(found, list) and len(found) >= 3 and found[0] == "TCPROS":
         host, port = found[1], found[2]
         if isinstance(host, str) and host and isinstance(port, int) and 0 < port < 65536:

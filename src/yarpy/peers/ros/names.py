@@ -71,7 +71,8 @@ class RosNames:
             self.master.call("unregisterPublisher", ros_name(name), REGISTRATION, uri)
 
     def query(self, name: str) -> Contact | None:
-        """Where a node, a port or a service is, or the master; nothing has a topic's name."""
+        """Return the address of a node, a port or a service, or of the master; a topic's name has
+        none."""
         if not _is_port(name):
             return None  # without asking, so that such a port opens before its master comes
         found = self._node(name)

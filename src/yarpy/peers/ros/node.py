@@ -346,7 +346,7 @@ class Node(Parameters):
 
     @property
     def uri(self) -> str:
-        """Where the node answers."""
+        """The address where the node answers."""
         return self._node.place.uri
 
     def close(self) -> None:

@@ -48,7 +48,7 @@ _UNITS: Final = {"prismatic": 0.001}  # metres in a millimetre
 
 @dataclass(frozen=True)
 class _Joint:
-    """Where a joint is found, and what one of its units is in ROS."""
+    """The board of a joint, its number there, and what one of its units is in ROS."""
 
     name: str
     board: Any

@@ -28,7 +28,7 @@ class Node(Protocol):
 
     @property
     def master_uri(self) -> str:
-        """Where its master is."""
+        """The address of its master."""
 
     @property
     def host(self) -> str:

@@ -1,4 +1,4 @@
-"""What happens to the promises of a topic: the events of QoS, as rclpy calls them.
+"""The events of QoS, as rclpy calls them: what happens to the promises of a topic.
 
     incompatible_qos      somebody is kept out; `policy` says by what
     deadline_missed       nothing was published, or came, for longer than agreed

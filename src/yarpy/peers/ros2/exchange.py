@@ -1,4 +1,4 @@
-"""What nodes of ROS 2 need whatever carries their messages.
+"""The parts that nodes of ROS 2 need whatever carries their messages.
 
     Worker       a thread that takes what comes for several endpoints, one after the other, or some
     Question     what a service is asked, with the way back

@@ -1,4 +1,4 @@
-"""Which type a topic or service has: what the user says, what the graph says, what is written.
+"""The type of a topic or service: what the user says, what the graph says, what is written.
 
 Rules: pure. Where a peer has another version of a type that somebody here knows, that one is taken;
 where nobody knows it, the error says both. Nodes of Humble have no hashes: there the name decides.
@@ -112,7 +112,8 @@ def chosen(value: object) -> type[Message]:
 
 
 def key_of(domain: int, name: str, kind: Any, old: bool) -> Key:
-    """Where messages of a type go, or questions to a service. `old`: for Humble."""
+    """Return the key under which messages of a type go, or questions to a service. `old`: for
+    Humble."""
     what = SERVICE if isinstance(kind, Service) else MESSAGE
     return Key(domain, name, dds_name(_plain(kind), what), NO_HASH if old else hash_of(kind))
 

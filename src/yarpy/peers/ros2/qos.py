@@ -62,7 +62,7 @@ class Qos:
 
     @property
     def kept(self) -> int:
-        """How many messages are kept."""
+        """The number of messages that are kept."""
         return MOST_KEPT if self.history == KEEP_ALL else max(1, min(self.depth, MOST_KEPT))
 
     def __str__(self) -> str:

@@ -1,4 +1,4 @@
-"""What carries the messages of a node, as ROS 2's own layer `rmw` does: Zenoh, or DDS.
+"""The layer that carries the messages of a node, as ROS 2's own layer `rmw` does: Zenoh, or DDS.
 
 Rules: `zenoh/rmw.py` and `dds/rmw.py` are the two there are, and name the classes of their
 endpoints. What is given to a callback is given in the thread of a worker, or in one of the

@@ -66,7 +66,7 @@ class ZenohDelegate:
         self._work.put(name)
 
     def query(self, name: str) -> Contact | None:
-        """Where a port is that tells itself; None if there is none, or no router."""
+        """Return the address of a port that tells itself; None if there is none, or no router."""
         if not name.startswith("/") or time.monotonic() < self._away:
             return None
         try:

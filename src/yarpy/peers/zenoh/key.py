@@ -85,7 +85,7 @@ def space(namespace: str = "/root") -> str:
 
 
 def name_key(base: str, name: str) -> str:
-    """Where a name is asked for.
+    """Return the key under which a name is asked for.
 
     >>> name_key("@yarp/root", "/icub/head*")
     '@yarp/root/name/icub/head%2A'

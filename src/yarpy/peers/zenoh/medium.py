@@ -78,7 +78,7 @@ def check_key(name: str, patterns: bool = False) -> str:
 
 
 def _where() -> str:
-    """Where Zenoh is, "" for the usual place."""
+    """Return the place of Zenoh, "" for the usual one."""
     if os.environ.get(SETTING, "").strip():
         return ""
     try:

@@ -146,7 +146,8 @@ class ZenohNames:
             own.end()
 
     def query(self, name: str) -> Contact | None:
-        """Where `name` is. Raises NoNameServer (no router), Timeout (its program is stopped)."""
+        """Return the address of `name`. Raises NoNameServer (no router), Timeout (its program is
+        stopped)."""
         with self._lock:
             own = self._own.get(name)
         if own is not None:

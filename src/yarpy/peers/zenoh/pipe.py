@@ -333,7 +333,7 @@ class ZenohPipe(Answerable):
             left = self.try_send(left)
 
     def _room(self) -> int:
-        """How many bytes may go now."""
+        """Return how many bytes may go now."""
         if (self._number - self._confirmed_number) % _ALL >= MESSAGES:
             return 0
         return max(0, self._confirmed + WINDOW - self._sent)

@@ -1,4 +1,4 @@
-"""Where sessions of Zenoh go, as users write it. A place is
+"""The places that sessions of Zenoh go to, as users write them. A place is
 
     (nothing)                 what YARPY_ZENOH says, else the router of this computer
     tcp/192.168.1.2:7447      a router; or `tls/...`, `quic/...`, or `host` or `host:port` alone
@@ -33,7 +33,8 @@ SECURE: Final = ("tls", "quic")
 
 @dataclass(frozen=True, slots=True)
 class Place:
-    """Where a session goes: to one of `routers`, or by `file`; to neither: to the local network."""
+    """The place that a session goes to: one of `routers`, or what `file` says; with neither, the
+    local network."""
 
     routers: tuple[str, ...] = ()
     file: str = ""

@@ -52,7 +52,7 @@ def machine() -> str:
 
 
 class Ways:
-    """How to get to programs, as far as it is known."""
+    """The hosts at which programs are reached, as far as they are known."""
 
     def __init__(self) -> None:
         self._hosts: dict[str, tuple[str, float]] = {}  # session -> address or "", and until when
@@ -76,7 +76,8 @@ class Ways:
 
 
 def candidates(entry: Entry) -> list[str]:
-    """Where the port may be dialled from another computer: not at what is our own address too."""
+    """Return the hosts at which the port may be dialled from another computer: none that is our own
+    address too."""
     own = set() if entry.machine == ANYWHERE else set(local_addresses())
     every = dict.fromkeys([entry.contact.host, *entry.addresses])
     return [

@@ -151,7 +151,7 @@ class Monitoring:
 
 
 def _look(name: str, contexts: Sequence[str]) -> Iterator[Path]:
-    """Where a monitor's file may be: where configuration files are looked for."""
+    """Return the paths that a monitor's file may have: where configuration files are looked for."""
     return Search(contexts=contexts).candidates(name)
 
 

@@ -29,7 +29,7 @@ Link = Inbound | Outbound
 
 @dataclass(slots=True)
 class _Turn:
-    """When a connection gets its next ping. `heard`: bytes that had come when the peer was last
+    """The time of a connection's next ping. `heard`: bytes that had come when the peer was last
     known to be there; `asked`: when the first ping left after that, None if none has."""
 
     due: float
@@ -38,7 +38,7 @@ class _Turn:
 
 
 class Pings:
-    """When each connection that wants pings gets the next one."""
+    """The times of the next pings, for each connection that wants them."""
 
     def __init__(self) -> None:
         self._turns: dict[Link, _Turn] = {}

@@ -165,7 +165,8 @@ def _tos(group: Bottle) -> int:
 
 
 def _wishes(group: Bottle) -> dict[str, Any]:
-    """When messages should come; a word that is misspelt is refused and not passed over."""
+    """Return the timing that is asked for; a word that is misspelt is refused and not passed
+    over."""
     found: dict[str, Any] = {}
     for item in group:
         key = plain_text(item[0]) if isinstance(item, Bottle) and len(item) == 2 else ""

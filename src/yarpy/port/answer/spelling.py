@@ -1,4 +1,4 @@
-"""How answers are spelled for whoever does not tell: as YARP 3 does, or 4.
+"""The spelling of answers for whoever does not tell its own: as YARP 3 does, or 4.
 
 Rules: a port of C++ cannot be asked while it waits for the answer. The name server of yarpy has
 asked it before (`nameserver/versions.py`), and says it of its name. Beside the name server of C++

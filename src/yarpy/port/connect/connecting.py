@@ -355,7 +355,8 @@ def _wait_for_member(hub: Hub, contact: Contact, carrier: Carrier, driver: Drive
 
 
 def _other_address(hub: Hub, contact: Contact) -> Contact | None:
-    """Where else a port on a host with several networks can be reached from here, if anywhere.
+    """Return another address of a port on a host with several networks that can be reached from
+    here, if there is one.
 
     It told the name server all its addresses; a port that answers there must have the right name.
     """

@@ -96,7 +96,7 @@ class Attempts:
 
     @property
     def under_way(self) -> int:
-        """How many have not ended yet."""
+        """The number of dials that have not ended yet."""
         return len(self._targets)
 
     def _run(self, target: str, attempt: Callable[[], object]) -> None:

@@ -88,8 +88,9 @@ def is_refused(error: BaseException) -> bool:
 def connection(
     contact: Contact, side: str, peer: str, secret_: bytes | None = None, secure: bool = False
 ) -> Property | None:
-    """How the connection with `peer` on that side ("in" or "out") of the port at `contact` is
-    doing; None if there is none. Raises LookupError if it is no port of yarpy, and as `ask`."""
+    """Return the statistics of the connection with `peer` on that side ("in" or "out") of the port
+    at `contact`; None if there is none. Raises LookupError if it is no port of yarpy, and as
+    `ask`."""
     reply = ask(contact, [Vocab("stat"), Vocab(side), peer], secret_=secret_, secure=secure)
     if reply and reply[0] == Vocab("fail"):
         raise LookupError(f"{contact} does not count")

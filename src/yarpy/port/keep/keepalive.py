@@ -51,7 +51,7 @@ Link = Inbound | Outbound
 
 
 class _Sign:
-    """When a connection is to be looked at, and what it was found like."""
+    """The time when a connection is to be looked at next, and what it was found like."""
 
     __slots__ = (
         "answers", "asked", "asking", "contact", "cut", "due", "heard", "line", "messages",
@@ -161,7 +161,7 @@ class Keepalive:
             sign.asking = False
 
     def _go_on(self, link: Link, sign: _Sign, good: bool, bad: int) -> None:
-        """When to look next, after a `good` answer or so many `bad` ones."""
+        """Set the time of the next look, after a `good` answer or so many `bad` ones."""
         sign.misses = sign.misses + bad if bad else 0
         longest = LATER if link.carrier.delivery.connectionless else RARELY
         sign.pause = min(2 * sign.pause, longest) if good else SOON

@@ -218,8 +218,8 @@ class Registration:
         return self.names
 
     def locate(self, wanted: Contact) -> Contact | None:
-        """Where a destination is; None if no name service knows. Raises NoNameServer if none
-        answers."""
+        """Return the address of a destination; None if no name service knows. Raises NoNameServer
+        if none answers."""
         if wanted.placed:
             return wanted
         names = self.service() if wanted.name.startswith("/") else None

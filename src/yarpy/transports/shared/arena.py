@@ -226,7 +226,7 @@ class Arena:
 
     @cached_property
     def address(self) -> int:
-        """Where it is mapped."""
+        """The address where it is mapped."""
         return address_of(self._memory)
 
     def place(self, blocks: Sequence[Buffer], size: int) -> Placed | None:
@@ -282,7 +282,7 @@ class Arena:
 
     @property
     def used(self) -> int:
-        """How many payloads are lent, or about to be."""
+        """The number of payloads that are lent, or about to be."""
         self.tidy()
         return len(self._loans)
 

@@ -43,7 +43,7 @@ class Shown:
 
     @cached_property
     def address(self) -> int:
-        """Where it is mapped."""
+        """The address where it is mapped."""
         return address_of(self.memory)
 
     @property
@@ -127,6 +127,6 @@ def _checked(file: Descriptor) -> int:
 
 @cache
 def _device() -> int:
-    """Where ordinary files in memory lie."""
+    """Return the device on which ordinary files in memory lie."""
     file = sealed_memory("yarpy", 0)
     return os.fstat(file.fileno()).st_dev

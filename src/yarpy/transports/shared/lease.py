@@ -25,7 +25,7 @@ class Source(Protocol):
 
     @property
     def address(self) -> int:
-        """Where it is mapped here."""
+        """The address where it is mapped here."""
 
     @property
     def descriptors(self) -> tuple[int, ...]:
@@ -59,7 +59,7 @@ def _leave_to_parent() -> None:
 fork.after_in_child(_leave_to_parent)
 
 Place: TypeAlias = tuple[Source, int, object]
-"""Where a payload lies already: in what, at which offset; and what keeps it there."""
+"""The place of a payload in memory: its source, the offset there, and what keeps it there."""
 
 
 _MADE: Final[dict[str, Any]] = {}  # the class, once somebody wants one
@@ -89,8 +89,8 @@ def _make() -> Any:
 
 
 def place_of(blocks: Sequence[Buffer]) -> Place | None:
-    """Where the bytes of these blocks lie one after the other in memory that can be shown to
-    others; None if they do not.
+    """Return the place where the bytes of these blocks lie one after the other in memory that can
+    be shown to others; None if they do not.
 
     The last block is what lies there; what is in front of it is small, and lies before it or can be
     put there.
@@ -163,7 +163,7 @@ def _forbid(one: Any) -> None:
 
 
 def address_of(memory: mmap.mmap) -> int:
-    """Where a file is mapped."""
+    """Return the address where a file is mapped."""
     np = imported("numpy")
     address: int = np.frombuffer(memory, np.uint8).__array_interface__["data"][0]
     return address

@@ -36,7 +36,7 @@ _HELD: Final = 5.0  # seconds that the other side may have a mutex: copying take
 
 
 def name_of(kind: str, number: int) -> str:
-    """Where C++ has a ring's mutex of that kind."""
+    """Return the path of C++'s mutex of that kind for a ring."""
     return os.path.join(os.environ.get("TMPDIR") or "/tmp", f"SHMEM_{kind}_MUTEX_{number}")
 
 
@@ -105,7 +105,7 @@ class Ring:
 
     @property
     def filled(self) -> int:
-        """How many bytes are in it that nobody has read, about."""
+        """The number of bytes in it that nobody has read, about."""
         return self._segment.numbers[_FILLED]
 
     # -- the reader -------------------------------------------------------------------------------

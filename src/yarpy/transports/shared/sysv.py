@@ -129,7 +129,7 @@ class Segment:
 
     @property
     def attached(self) -> int:
-        """How many programs have it (a program that has it twice counts twice)."""
+        """The number of programs that have it (a program that has it twice counts twice)."""
         count: int = _ATTACHED.unpack_from(_stat(self._identity))[0]
         return count
 

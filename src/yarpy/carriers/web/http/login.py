@@ -43,7 +43,7 @@ class Challenge:
 
     @property
     def strength(self) -> int:
-        """How strong the digest is; 0 for an unsupported one."""
+        """The strength of the digest; 0 for an unsupported one."""
         if self.qop not in ("", "auth"):
             return 0
         return _STRENGTH.get(self.algorithm.lower().removesuffix("-sess"), 0)

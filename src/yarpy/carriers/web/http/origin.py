@@ -1,4 +1,5 @@
-"""Which web pages may act on a port and read it, and by which host names: `YARPY_WEB_ORIGINS`.
+"""The rules by which web pages may act on a port and read it, and the host names by which they
+reach it: `YARPY_WEB_ORIGINS`.
 
     (nothing), none                   only the port's own page; pages of this network read
     http://dash:8080 https://x.org    pages from there too
@@ -36,7 +37,7 @@ _SHOWN: Final = 100  # characters of an origin that a refusal repeats
 
 
 class Origins:
-    """Which pages may act on a port: those of the `listed` origins and `hosts`.
+    """The pages that may act on a port: those of the `listed` origins and `hosts`.
 
     `listed` None: all pages.
     """
@@ -181,8 +182,8 @@ class Origins:
 
     @property
     def framing(self) -> str:
-        """Which origins may frame pages that may act, namely those that may act themselves. For the
-        header Content-Security-Policy; empty if all may.
+        """The origins that may frame pages that may act, namely those that may act themselves. For
+        the header Content-Security-Policy; empty if all may.
         """
         if self.listed is None:
             return ""

@@ -27,7 +27,7 @@ _HOST = re.compile(r"[A-Za-z0-9.\-]+|\[[0-9A-Fa-f:.]+\]")
 
 @dataclass(frozen=True, slots=True)
 class Browsed:
-    """How a browser sees the port. host: its name for this computer, which replaces the loopback in
+    """A port as a browser sees it. host: its name for this computer, which replaces the loopback in
     links. secure: over https, which links then use too. may_write: it may send messages."""
 
     host: str = ""

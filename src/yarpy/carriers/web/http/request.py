@@ -377,7 +377,7 @@ def _outer(fields: Mapping[str, str]) -> Outer:
 
 
 def _form(request: Request, fields: Mapping[str, str], default: Form) -> Form:
-    """How to answer: as `format` says, else as the client accepts."""
+    """Return the form of the answer: as `format` says, else as the client accepts."""
     named = _SPELLINGS.get(fields.get("format", ""))
     if named is not None and named != "events":
         return named

@@ -30,7 +30,7 @@ class AnalogSensor(RemoteDevice[tuple[float, ...]]):
         return [*self._latest.value()]
 
     def timestamp(self) -> float:
-        """When they were measured, seconds (of the sender's clock)."""
+        """Return the time when they were measured, seconds (of the sender's clock)."""
         return self._latest.time()
 
     def calibrate(self, values: Sequence[float] | None = None) -> None:

@@ -46,7 +46,7 @@ PARTS: Final[Mapping[int, tuple[int | None, ...]]] = {
 
 
 class Network(NamedTuple):
-    """Which channels are a device's: `first` to `last` here, from `base` to `top` there."""
+    """The channels of a device: `first` to `last` here, from `base` to `top` there."""
 
     first: int
     last: int

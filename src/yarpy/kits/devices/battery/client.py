@@ -49,7 +49,7 @@ class Battery(RemoteDevice[BatteryData]):
         return BATTERY[number] if number in range(len(BATTERY)) else "error"
 
     def timestamp(self) -> float:
-        """When it was measured, seconds (of the sender's clock)."""
+        """Return the time when it was measured, seconds (of the sender's clock)."""
         return self._latest.time()
 
     @property

@@ -59,7 +59,7 @@ class Board(Access):
         return super().values(member, kind)
 
     def timestamps(self) -> list[float]:
-        """When the encoders were read, seconds."""
+        """Return the times when the encoders were read, seconds."""
         if self.has("timestamps"):
             return super().values("timestamps")
         return [clock.now()] * self.count

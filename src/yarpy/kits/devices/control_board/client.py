@@ -113,31 +113,31 @@ class ControlBoard(NewerMembers):
     # -- what is measured ---------------------------------------------------------------------
 
     def encoders(self) -> list[float]:
-        """Where the joints are, degrees."""
+        """Return the positions of the joints, degrees."""
         return self._measured("encoders")
 
     def timestamps(self) -> list[float]:
-        """When the encoders were read, seconds (of the board's clock)."""
+        """Return the times when the encoders were read, seconds (of the board's clock)."""
         return [self._latest.time()] * self.axes
 
     def encoder_speeds(self) -> list[float]:
-        """How fast the joints move, deg/s."""
+        """Return the speeds of the joints, deg/s."""
         return self._measured("encoder_speeds")
 
     def encoder_accelerations(self) -> list[float]:
-        """How fast the speeds change, deg/s^2."""
+        """Return the accelerations of the joints, deg/s^2."""
         return self._measured("encoder_accelerations")
 
     def motor_encoders(self) -> list[float]:
-        """Where the motors are, degrees."""
+        """Return the positions of the motors, degrees."""
         return self._measured("motor_encoders")
 
     def motor_speeds(self) -> list[float]:
-        """How fast the motors turn, deg/s."""
+        """Return the speeds of the motors, deg/s."""
         return self._measured("motor_speeds")
 
     def motor_accelerations(self) -> list[float]:
-        """How fast the motors' speeds change, deg/s^2."""
+        """Return the accelerations of the motors, deg/s^2."""
         return self._measured("motor_accelerations")
 
     def torques(self) -> list[float]:
@@ -317,7 +317,7 @@ class ControlBoard(NewerMembers):
 
     @property
     def axis_types(self) -> list[str]:
-        """How the joints move: `revolute`, `prismatic` or `unknown`."""
+        """The types of the joints: `revolute`, `prismatic` or `unknown`."""
         return self._ask.read("axis_types")
 
     reference_speeds = Adjustable[float]("deg/s, of position moves")

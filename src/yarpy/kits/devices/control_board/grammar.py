@@ -42,7 +42,7 @@ IMPEDANCE_RANGE: Final = Numbers(4)
 
 
 class Form(Enum):
-    """How many joints a word is about."""
+    """The number of joints that a word of a request is about."""
 
     ONE = "one"
     ALL = "all"

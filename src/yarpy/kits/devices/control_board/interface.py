@@ -41,7 +41,7 @@ from typing import Any, NamedTuple, Protocol
 
 
 class ControlMode(StrEnum):
-    """How a joint is controlled, in YARP's words. Equal to the word: `mode == "pos"`."""
+    """The control mode of a joint, in YARP's words. Equal to the word: `mode == "pos"`."""
 
     POSITION = "pos"  # trajectories between targets
     POSITION_DIRECT = "posd"
@@ -85,7 +85,7 @@ class Gains(NamedTuple):
 
 
 class MotorTorqueParameters(NamedTuple):
-    """How a motor produces torque, in the order of the protocol."""
+    """The parameters by which a motor produces torque, in the order of the protocol."""
 
     bemf: float = 0.0
     bemf_scale: float = 0.0
@@ -106,7 +106,7 @@ class Joints(Protocol):
         """The names of the joints; their number is the number of joints."""
 
     def encoders(self) -> Sequence[float]:
-        """Where the joints are."""
+        """Return the positions of the joints."""
 
 
 class PidController(Protocol):
@@ -139,22 +139,23 @@ class ControlBoardLike(Joints, Protocol):
     # -- what is measured ---------------------------------------------------------------------
 
     def timestamps(self) -> Sequence[float]:
-        """When the encoders were read, in seconds; default: the time of the call."""
+        """Return the times when the encoders were read, in seconds; default: the time of the
+        call."""
 
     def encoder_speeds(self) -> Sequence[float]:
-        """How fast the joints move."""
+        """Return the speeds of the joints."""
 
     def encoder_accelerations(self) -> Sequence[float]:
-        """How fast the speeds change, deg/s^2."""
+        """Return the accelerations of the joints, deg/s^2."""
 
     def motor_encoders(self) -> Sequence[float]:
-        """Where the motors are."""
+        """Return the positions of the motors."""
 
     def motor_speeds(self) -> Sequence[float]:
-        """How fast the motors turn."""
+        """Return the speeds of the motors."""
 
     def motor_accelerations(self) -> Sequence[float]:
-        """How fast the motors' speeds change, deg/s^2."""
+        """Return the accelerations of the motors, deg/s^2."""
 
     def torques(self) -> Sequence[float]:
         """Torque of each joint."""

@@ -51,7 +51,7 @@ def _members(protocol: type[Any]) -> dict[str, str]:
 
 
 class _Places:
-    """Where joints are: for each the board, and its number there."""
+    """The board of each joint, and the joint's number there."""
 
     def __init__(self, boards: Sequence[Any], axes: Sequence[str]) -> None:
         known: dict[str, tuple[int, int]] = {}

@@ -197,7 +197,7 @@ class Requests(Closeable):
         self.send([Vocab("set"), Vocab("ivar"), Vocab("mvar"), name, *values])
 
     def variable_names(self) -> list[str]:
-        """Which ones there are."""
+        """Return the names of the variables."""
         return [*map(str, self.tell("get", "ivar", "lvar")[2])]
 
     def tell(self, *words: Any) -> list[Any]:

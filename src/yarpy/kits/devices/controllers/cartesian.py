@@ -24,7 +24,7 @@ from yarpy.kits.devices.kind import word
 
 
 class HandPose(NamedTuple):
-    """Where a hand is: metres; axis and angle, radians; the controller's time."""
+    """The pose of a hand: metres; axis and angle, radians; the controller's time."""
 
     position: tuple[float, ...]
     orientation: tuple[float, ...]
@@ -153,7 +153,7 @@ class CartesianController(ControllerClient):
 
     @property
     def trajectory_time(self) -> float:
-        """How many seconds a movement takes."""
+        """The duration of a movement, seconds."""
         return self.ask_number(*self._words("get", "time"))
 
     @trajectory_time.setter
@@ -162,7 +162,7 @@ class CartesianController(ControllerClient):
 
     @property
     def tolerance(self) -> float:
-        """How near is near enough."""
+        """The distance from its goal at which a movement is done."""
         return self.ask_number(*self._words("get", "tol"))
 
     @tolerance.setter
@@ -200,7 +200,7 @@ class CartesianController(ControllerClient):
 
     @property
     def dof(self) -> tuple[float, ...]:
-        """Which joints are used: 1 or 0 for each."""
+        """The joints that are used: 1 or 0 for each."""
         return self.ask_numbers(*self._words("get", "dof"))
 
     @dof.setter
@@ -209,7 +209,7 @@ class CartesianController(ControllerClient):
 
     @property
     def rest_position(self) -> tuple[float, ...]:
-        """Where joints are that have a choice, degrees."""
+        """The positions that joints take where the goal leaves a choice, degrees."""
         return self.ask_numbers(*self._words("get", "resp"))
 
     @rest_position.setter
@@ -218,7 +218,7 @@ class CartesianController(ControllerClient):
 
     @property
     def rest_weights(self) -> tuple[float, ...]:
-        """How much each of them matters."""
+        """The weight of each joint's rest position."""
         return self.ask_numbers(*self._words("get", "resw"))
 
     @rest_weights.setter
@@ -226,7 +226,7 @@ class CartesianController(ControllerClient):
         self.ask(*self._words("set", "resw"), Bottle(map(float, values)))
 
     def limits(self, axis: int) -> tuple[float, float]:
-        """How far a joint may go, degrees."""
+        """Return the range of a joint, degrees."""
         words = (*self._words("get", "lim"), int(axis))
         found = self.ask(*words)
         try:

@@ -89,7 +89,7 @@ class FrameGrabber(Closeable):
             yield self.image()
 
     def timestamp(self) -> float:
-        """When the last image was taken, seconds (of the camera's clock)."""
+        """Return the time when the last image was taken, seconds (of the camera's clock)."""
         return self.stamp.time
 
     def crop(self, left: int, top: int, right: int, bottom: int) -> Image:
@@ -140,7 +140,7 @@ class FrameGrabber(Closeable):
 
     @property
     def description(self) -> tuple[str, str]:
-        """How the camera is connected, and which one it is."""
+        """The bus of the camera, and a text that says which camera it is."""
         bus, text = self._payload(self._send("fgc", "get", "camd"), 2)[:2]
         return BUSES[bus] if bus in range(len(BUSES)) else "unknown", str(text)
 

@@ -45,7 +45,8 @@ class FrameGrabberLike(Camera, Protocol):
     """Everything a frame grabber can have. For reading; classes need not inherit it."""
 
     def timestamp(self) -> float:
-        """When the last image was taken, in seconds; default: when `image` returned."""
+        """Return the time when the last image was taken, in seconds; default: when `image`
+        returned."""
 
     resolution: tuple[int, int]  # width and height in pixels; default: the image's
     resolutions: Sequence[tuple[int, int, float, str]]  # supported: width, height, Hz, pixel code

@@ -82,7 +82,7 @@ class SerialImu(Closeable):
         return self._read("thermometers")
 
     def timestamps(self) -> dict[str, float]:
-        """When the last packet came, seconds."""
+        """Return the time when the last packet came, seconds."""
         return {self._name: self._time}
 
     def _read(self, kind: str) -> dict[str, tuple[float, ...]]:

@@ -65,7 +65,7 @@ class OpencvCamera(Closeable):
         return self._cv2.cvtColor(found, self._cv2.COLOR_BGR2RGB) if there else None
 
     def timestamp(self) -> float:
-        """When the last picture was taken, seconds."""
+        """Return the time when the last picture was taken, seconds."""
         return self._time
 
 

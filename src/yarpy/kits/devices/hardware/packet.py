@@ -28,7 +28,7 @@ class Status(NamedTuple):
 
 
 class Form(Protocol):
-    """How packets look on a line."""
+    """The form of packets on a line."""
 
     def packet(self, servo: int, instruction: int, parameters: bytes) -> bytes:
         """Return the packet that tells a servo to do something."""

@@ -44,7 +44,7 @@ NOISE: Final = 1.0
 
 
 class Register(NamedTuple):
-    """Where a number is, and its size in bytes. sign: the bit of its sign, where it is no
+    """The address of a number, and its size in bytes. sign: the bit of its sign, where it is no
     two's complement."""
 
     at: int

@@ -86,7 +86,7 @@ class V4l2Camera(Closeable):
         return self._decode(data, self._layout)
 
     def timestamp(self) -> float:
-        """When the last picture was taken, seconds."""
+        """Return the time when the last picture was taken, seconds."""
         return self._time
 
     def _next(self) -> tuple[int, bytes]:

@@ -1,4 +1,4 @@
-"""What navigation exchanges: places, paths, areas and objects of a map, odometry, velocities.
+"""The values of navigation: places, paths, areas and objects of a map, odometry, velocities.
 
 Rules: metres and degrees, m/s and deg/s. A place is in the map `map_id`. These are the structs that
 C++ calls Map2DLocation, Map2DPath, Map2DArea, Map2DObject, OdometryData, MobileBaseVelocity.
@@ -54,8 +54,8 @@ class Thing(Struct):
 
 
 class Odometry(Struct):
-    """Where a base thinks it is since it began, and how fast it is: seen from the base, and from
-    where it began."""
+    """The pose that a base has by its odometry since it began, and its velocity: seen from the
+    base, and from where it began."""
 
     odom_x: float = 0.0
     odom_y: float = 0.0

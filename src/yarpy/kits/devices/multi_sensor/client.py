@@ -46,7 +46,7 @@ class MultiSensor(RemoteDevice[_Measures]):
         return f"<MultiSensor {self.remote}, {listed}>"
 
     def timestamps(self) -> dict[str, float]:
-        """When each sensor was read, seconds (of the sender's clock)."""
+        """Return the time when each sensor was read, seconds (of the sender's clock)."""
         measures = self._latest.value()
         return {
             name: at

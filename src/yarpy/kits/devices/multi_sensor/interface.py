@@ -51,7 +51,8 @@ class MultiSensorLike(Protocol):
     frames: Mapping[str, str]  # sensor name -> name of its frame; default: the sensor's name
 
     def timestamps(self) -> Mapping[str, float]:
-        """When sensors were last read, in seconds, by name; default: the time of the call.
+        """Return the times when sensors were last read, in seconds, by name; default: the time of
+        the call.
 
         Called after the methods of all kinds.
         """

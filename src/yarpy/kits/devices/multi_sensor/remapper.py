@@ -70,7 +70,7 @@ class RemappedSensors:
         }
 
     def timestamps(self) -> dict[str, float]:
-        """When sensors were read, for those whose devices say so."""
+        """Return the times when sensors were read, for those whose devices say so."""
         found: dict[str, float] = {}
         for part in self._parts:
             if hasattr(part, "timestamps"):

@@ -137,7 +137,7 @@ class MultiSensorServer(Closeable):
         return metadata(listed, count == NEWER)
 
     def _times(self) -> Mapping[str, float]:
-        """When sensors were read, for those of which the device says so."""
+        """Return the times when sensors were read, for those of which the device says so."""
         try:
             found = self._sensors.ask("timestamps")
         except Refused:

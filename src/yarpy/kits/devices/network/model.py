@@ -102,7 +102,7 @@ class Member:
     signature: inspect.Signature
     results: tuple[Any, ...]
     count: int
-    """How many arguments it takes in their order; -1 where some are taken by name alone."""
+    """The number of arguments taken in their order; -1 where some are taken by name alone."""
     function: str = ""
     cpp: str = ""
     status: bool = True

@@ -56,7 +56,7 @@ class SimulatedArm:
 
     @property
     def dof(self) -> list[float]:
-        """Which joints are used."""
+        """The joints that are used."""
         return [*self._used]
 
     @dof.setter
@@ -94,7 +94,7 @@ class SimulatedArm:
     # -- motion -------------------------------------------------------------------------------
 
     def joints(self) -> list[float]:
-        """Where the joints are, degrees."""
+        """Return the positions of the joints, degrees."""
         with self._lock:
             done = self._smooth(self.progress())
             pairs = zip(self._from, self._to, strict=True)
@@ -246,7 +246,7 @@ def _axis_angle(m: NDArray[Any]) -> tuple[float, ...]:
 
 
 def _forward(joints: Sequence[float]) -> list[NDArray[Any]]:
-    """Where each joint is; degrees."""
+    """Return the frame of each joint, a 4 x 4 matrix; joints in degrees."""
     import numpy as np
 
     frames, frame = [], np.eye(4)
@@ -262,7 +262,8 @@ def _forward(joints: Sequence[float]) -> list[NDArray[Any]]:
 
 
 def _reach(joints: NDArray[Any], tip: NDArray[Any]) -> tuple[NDArray[Any], NDArray[Any]]:
-    """Where the tip is, and how it moves with each joint: metres and radians."""
+    """Return the frame of the tip, and the Jacobian (how it moves with each joint): metres and
+    radians."""
     import numpy as np
 
     frames = _forward(np.degrees(joints).tolist())

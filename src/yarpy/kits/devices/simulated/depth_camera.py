@@ -190,7 +190,7 @@ class SimulatedDepthCamera:
         )
 
     def _ball(self) -> Any:
-        """Where the ball is seen."""
+        """Return the mask of the pixels that show the ball."""
         import numpy as np
 
         width, height = self._size

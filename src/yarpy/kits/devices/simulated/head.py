@@ -110,7 +110,7 @@ class SimulatedHead:
         return degrees(atan2(y, -x)), degrees(atan2(up, flat)), degrees(vergence)
 
     def _camera(self, camera: str) -> tuple[Any, Any]:
-        """Where it is, and its axes: right, down, forwards."""
+        """Return the position of a camera, and its axes: right, down, forwards."""
         import numpy as np
 
         azimuth, elevation, _ = map(radians, self.angles())
@@ -133,7 +133,8 @@ class SimulatedHead:
         return CENTRE[0] + FOCAL * x / z, CENTRE[1] + FOCAL * y / z
 
     def _ray(self, camera: str, pixel: Sequence[float]) -> tuple[Any, Any]:
-        """Where a camera is, and how to a point one metre ahead of it."""
+        """Return the position of a camera, and the vector from there to what a pixel shows one
+        metre ahead."""
         import numpy as np
 
         at, axes = self._camera(camera)

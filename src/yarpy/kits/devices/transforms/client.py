@@ -108,7 +108,7 @@ class TransformClient(Closeable):
         return sorted({name for each in self.all() for name in (each.source, each.target)})
 
     def pose(self, frame: str, reference: str) -> NDArray[Any]:
-        """Where `frame` is, seen from `reference`: a 4 x 4 matrix. Raises LookupError."""
+        """Return the pose of `frame`, seen from `reference`: a 4 x 4 matrix. Raises LookupError."""
         return pose({each.target: each for each in self.all()}, frame, reference)
 
     def _tell(self, function: str, *arguments: Any) -> None:

@@ -86,7 +86,7 @@ class Frames:
             return [*self._known.values()]
 
     def pose(self, frame: str, reference: str) -> NDArray[Any]:
-        """Where `frame` is, seen from `reference`: a 4 x 4 matrix. Raises LookupError."""
+        """Return the pose of `frame`, seen from `reference`: a 4 x 4 matrix. Raises LookupError."""
         return pose({each.target: each for each in self.all()}, frame, reference)
 
     def _alive(self) -> dict[str, Transform]:
@@ -123,7 +123,8 @@ def check(given: Transform) -> None:
 
 
 def pose(known: dict[str, Transform], frame: str, reference: str) -> NDArray[Any]:
-    """Where `frame` is, seen from `reference`, both of them among these. LookupError."""
+    """Return the pose of `frame`, seen from `reference`: a 4 x 4 matrix. Raises LookupError if one
+    of them is not among the known, or no path joins them."""
     import numpy as np
 
     there, here = _path(known, frame), _path(known, reference)
@@ -155,7 +156,7 @@ def matrix(given: Transform) -> NDArray[Any]:
 
 
 def _product(path: Sequence[Transform]) -> NDArray[Any]:
-    """Where the first frame of a path is, seen from its root."""
+    """Return the pose of the first frame of a path, seen from its root."""
     import numpy as np
 
     found: NDArray[Any] = np.eye(4)

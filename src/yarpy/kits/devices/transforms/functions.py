@@ -9,7 +9,7 @@ from yarpy.kits.thrift.structure import Struct, new
 
 
 class Transform(Struct):
-    """Where the frame `target` is, seen from `source`: metres, and a quaternion."""
+    """The pose of the frame `target`, seen from `source`: metres, and a quaternion."""
 
     source: str = ""
     target: str = ""

@@ -1,4 +1,4 @@
-"""Where the words of a TOML file are: Python's parser keeps no lines and columns.
+"""The positions of the words of a TOML file: Python's parser keeps no lines and columns.
 
     places = Places(text, "demo.toml")
     places.of("programs.talker", "needs")      the key `needs` of the table [programs.talker]

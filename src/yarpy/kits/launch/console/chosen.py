@@ -1,4 +1,5 @@
-"""Which running application a command is about: by its name, by its file, or the only one."""
+"""The choice of the running application that a command is about: by its name, by its file, or the
+only one."""
 
 from __future__ import annotations
 

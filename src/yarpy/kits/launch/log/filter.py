@@ -1,4 +1,4 @@
-"""Which lines of a log are shown: by program, level, component and words.
+"""The choice of the lines of a log that are shown: by program, level, component and words.
 
 Rules: pure. Names are patterns as of the shell, or parts of names; what is searched for is a
 regular expression. A line whose level nobody told is shown at every level.

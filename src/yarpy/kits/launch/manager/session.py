@@ -1,4 +1,4 @@
-"""What a manager knows: files of applications, the one that is loaded, and who runs it.
+"""The state of a manager: files of applications, the one that is loaded, and who runs it.
 
 Rules: an application is run by a `yarpy up --idle` of its own in the background, so it outlives the
 manager, the next manager finds it again, and `yarpy status`, `logs` and `down` reach it as well.

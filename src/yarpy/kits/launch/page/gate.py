@@ -1,4 +1,4 @@
-"""Who may use the page of an application: the user whose application it is, on this computer.
+"""The gate of an application's page: it admits the user whose application it is, on this computer.
 
 Rules: whoever starts and stops programs may do what that user may, so an address proves nothing,
 and other users of this computer are refused as other computers are. The system says whose program

@@ -1,4 +1,4 @@
-"""Which program of an application has which port, so that its graph can be drawn.
+"""The program of an application that has a port, so that the graph of ports can be drawn.
 
 Rules: a port itself says in which process it is; a process belongs to the program whose session it
 is in. Where that is not known (a port that is not there yet, another computer), the command line

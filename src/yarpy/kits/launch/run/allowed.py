@@ -1,4 +1,5 @@
-"""Which programs a server starts: any of them for its owner, or those of a list for everybody.
+"""The programs that a server may start: any of them for its owner, or those of a list for
+everybody.
 
     allowed = Allowed(["yarpdev", "python3 /opt/lab/arm.py"])
     allowed.check(["yarpdev", "--device", "fakeFrameGrabber"], {}, "/nodeA")

@@ -339,7 +339,7 @@ class _Printer:
     def __init__(self, live: bool, stream: LogStream | None = None) -> None:
         self.told: list[str] = []
         self.page = ""
-        """Where the page is, if it was asked for."""
+        """The address of the page, if it was asked for."""
         self._live = live
         self._stream = stream
         self._lock = threading.Lock()

@@ -1,4 +1,4 @@
-"""How much room a disk has left, and sizes as people write them.
+"""The room that a disk has left, and sizes as people write them.
 
 Rules: at 10 % a recorder says so, at 2 % it stops, cleanly: a full disk stops other programs, too.
 """
@@ -53,7 +53,8 @@ class DiskSpace:
 
 @dataclass(frozen=True)
 class Split:
-    """When a recording goes on in a new file: after so many `bytes` or `seconds`, 0 for never."""
+    """The limits after which a recording goes on in a new file: so many `bytes` or `seconds`, 0 for
+    never."""
 
     bytes: int = 0
     seconds: float = 0.0

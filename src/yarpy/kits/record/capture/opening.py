@@ -1,4 +1,4 @@
-"""What a recorder begins with: the name of its file, and its port.
+"""The start of a recorder: the name of its file, and its port.
 
 Rules: nothing that lives is replaced. Several recorders run side by side.
 """

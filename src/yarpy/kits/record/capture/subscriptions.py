@@ -40,9 +40,9 @@ AT_ONCE: Final = 8  # connections that are being made
 
 @dataclass(frozen=True)
 class PortSelection:
-    """Which ports: `names`, those that contain a match of `pattern`, or `every` one; not those that
-    contain a match of `exclude`, unless they are named. Raises LocalProtocolError for what is no
-    regular expression, AddressError for what can never be the name of a port."""
+    """A choice of ports: `names`, those that contain a match of `pattern`, or `every` one; not
+    those that contain a match of `exclude`, unless they are named. Raises LocalProtocolError for
+    what is no regular expression, AddressError for what can never be the name of a port."""
 
     names: tuple[str, ...] = ()
     every: bool = False

@@ -1,1 +1,1 @@
-"""How messages are spelled in files so that other programs see them, and YARP's bytes come back."""
+"""The form of messages in files, such that other programs see them, and YARP's bytes come back."""

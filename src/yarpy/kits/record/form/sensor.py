@@ -1,4 +1,4 @@
-"""What sensors send, as Foxglove's messages: pictures, points in space, sounds, distances, joints.
+"""The data of sensors as Foxglove's messages: pictures, points in space, sounds, distances, joints.
 
 Rules: pure. Pixels, points and the samples of one channel are there once, in YARP's bytes. None is
 what Foxglove has no form for: it is kept as it is.

@@ -22,7 +22,7 @@ _TAG: Final = Struct("<i")
 
 
 class Structure:
-    """Where the numbers are in messages of `size` bytes that are built alike.
+    """The places of the numbers in messages of `size` bytes that are built alike.
 
     `outline` tells what a message is: a letter of `struct` for a number, "v" for a vocab, and
     a tuple of these for a list.

@@ -1,5 +1,5 @@
-"""How much memory a file of MATLAB takes, before a library reads it: compressed data may be a
-thousand times as long, and dimensions may lie.
+"""The memory that a file of MATLAB takes, computed before a library reads it: compressed data may
+be a thousand times as long, and dimensions may lie.
 
 Rules: nothing of it is kept. A file that is damaged is left to the library.
 """

@@ -1,4 +1,5 @@
-"""What is where in an MCAP file: from its summary, or by a walk over its chunks where it has none.
+"""The table of contents of an MCAP file: from its summary, or by a walk over its chunks where it
+has none.
 
 Rules: a file that was not finished (a kill, a power cut, a recording that still runs) is read as
 far as it goes. What is damaged is told with its byte, in `damages`; what can be read in spite of it

@@ -1,4 +1,4 @@
-"""What a page looks at: files, or the last minutes of ports.
+"""The data that a page shows: files, or the last minutes of ports.
 
 Rules: many threads ask a source at once, so each opens what it reads for itself. Of files the time
 line is made in the background, while the page is there already; `seen` tells how far it is.

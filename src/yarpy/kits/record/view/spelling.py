@@ -1,4 +1,4 @@
-"""How the messages of ports are spelled for clients: pictures as JPEG, all others as JSON.
+"""The form in which messages of ports are sent to clients: pictures as JPEG, all others as JSON.
 
 Rules: a picture is a `foxglove.CompressedImage` in protobuf, which every client shows; everything
 else `{"t": seconds, "kind": "yarp/vector", "v": [numbers], "text": "..."}`, in JSON, clouds of

@@ -1,4 +1,4 @@
-"""Where the base of a MuJoCo model is, for `Odometry2D` and `Localization2D` of `yarpy.devices`.
+"""The pose of the base of a MuJoCo model, for `Odometry2D` and `Localization2D` of `yarpy.devices`.
 
 Rules: the base is the first body with a free joint. Its place is the true one, in the map `world`;
 odometry counts from where it began, or was told to begin anew.

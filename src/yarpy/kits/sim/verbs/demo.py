@@ -161,7 +161,7 @@ def _advice(server: yarpy.NameServer, robot: Robot, page: yarpy.Port, elsewhere:
 
 
 def _own_name() -> str:
-    """How to call this program from where one is."""
+    """Return the command by which this program is called from the current folder."""
     import shutil
 
     beside = shutil.which("yarpy", path=os.path.dirname(sys.executable))

@@ -1,4 +1,4 @@
-"""Where the answer of a method ends, where it is no Bottle: replies come without a length.
+"""The end of a method's answer where it is no Bottle: replies come without a length.
 
     list<list<i32>>               C++ writes the tag of the inner elements into the outer list
     float32 of YARP 4.0           has the tag that a float64 has in 3.x

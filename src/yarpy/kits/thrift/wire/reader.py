@@ -114,7 +114,7 @@ class Cursor:
         return found
 
     def count(self, path: str, least: int) -> int:
-        """How many follow, of at least so many bytes each."""
+        """Return how many elements follow, of at least `least` bytes each."""
         count = self.number(path)
         if count < 0 or self.at + count * least > self.end:
             raise Truncated(

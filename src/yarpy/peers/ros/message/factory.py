@@ -88,7 +88,7 @@ class _Late:
 
 
 def annotation(kind: Type) -> str:
-    """How a type is written in Python."""
+    """Return the type as it is written in Python."""
     if isinstance(kind, ListOf):
         element = kind.element
         if isinstance(element, Primitive) and element.is_number:

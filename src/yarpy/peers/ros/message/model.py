@@ -123,7 +123,7 @@ def smallest(type_: Type) -> int:
 
 
 def parts(type_: Type) -> int:
-    """How many Python objects the smallest value is; an array of numbers is one."""
+    """Return how many Python objects the smallest value is; an array of numbers is one."""
     if isinstance(type_, Struct):
         return type_.parts
     if isinstance(type_, ListOf) and type_.length is not None:

@@ -1,4 +1,4 @@
-"""Where the text of a type comes from: folders, packages of ROS, what rosbags brings, and others.
+"""The sources of the text of a type: folders, packages of ROS, what rosbags brings, and others.
 
     Source                anything that finds a text by name; `Library` asks several in a row
     Folder                a folder with packages in it, or with files
@@ -36,7 +36,7 @@ class Source(Protocol):
         """The text of package/Type, `kind` being "msg" or "srv"; None if it is not here."""
 
     def __str__(self) -> str:
-        """Where this is, for people."""
+        """Return the place of the source, for people."""
 
 
 class Folder:

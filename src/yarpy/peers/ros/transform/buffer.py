@@ -38,7 +38,7 @@ class _Moment:
 
 @dataclass(frozen=True, slots=True)
 class Found:
-    """Where the frame `source` lies in `target` at `time`, in seconds; 0: always."""
+    """The pose of the frame `source` in `target` at `time`, in seconds; 0: always."""
 
     target: str
     source: str
@@ -200,7 +200,7 @@ class Buffer:
 
 
 def _at(name: str, moments: list[_Moment], time: int) -> _Moment:
-    """Where a frame was; interpolated between the moments around that time."""
+    """Return the pose of a frame; interpolated between the moments around that time."""
     at = bisect_right(moments, _Moment(time, "", Pose()))
     if at and moments[at - 1].time == time:
         return moments[at - 1]

@@ -34,7 +34,7 @@ class SentGoal:
 
     @property
     def status(self) -> Status:
-        """How far it is, as the server said last."""
+        """The status of the goal, as the server said last."""
         if self._result.done() and self._result.exception() is None:
             return Status(self._result.result().status)
         return self._client.statuses.get(self.id, Status.ACCEPTED)

@@ -1,5 +1,5 @@
-"""Which nodes there are over DDS, and whose a publisher or subscriber is: what the tools of ROS 2
-ask when they list nodes.
+"""The nodes that there are over DDS, and the node of a publisher or subscriber: what the tools of
+ROS 2 ask when they list nodes.
 
 Rules: DDS knows programs, not nodes. So each program tells of its nodes at the topic
 `ros_discovery_info`, anew whenever something changes, and who comes late is told, too. What others

@@ -1,4 +1,4 @@
-"""Where the text of a type of ROS 2 comes from: installed packages, what rosbags brings, and a few
+"""The sources of the text of a type of ROS 2: installed packages, what rosbags brings, and a few
 that are always there (`standard`).
 
 Rules: as in `rosmsg/source.py`. Of the distributions that rosbags knows, the one of ROS_DISTRO is

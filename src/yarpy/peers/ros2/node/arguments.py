@@ -1,4 +1,4 @@
-"""What `ros2 run` and `ros2 launch` say to a node on the command line of its program.
+"""The words that `ros2 run` and `ros2 launch` give to a node on the command line of its program.
 
     --ros-args -r __node:=left -r __ns:=/robot -r chatter:=/news -p gain:=2.5 --params-file f.yaml
 

@@ -1,4 +1,4 @@
-"""What the types of a node look like, for others who do not know them: every node since Iron
+"""The description of the types of a node, for others who do not know them: every node since Iron
 serves `get_type_description`.
 
 Rules: only types that the node itself uses are described, by name and hash.

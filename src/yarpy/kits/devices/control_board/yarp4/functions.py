@@ -48,7 +48,7 @@ class PidDetails(Struct):
 
 
 class TorqueParameters(Struct):
-    """How a motor produces torque."""
+    """The parameters by which a motor produces torque."""
 
     bemf: float = 0.0
     bemf_scale: float = 0.0
@@ -62,7 +62,7 @@ class TorqueParameters(Struct):
 
 
 class Calibration(Struct):
-    """How a joint is calibrated."""
+    """The parameters by which a joint is calibrated."""
 
     kind: i32 = 0
     parameter1: float = 0.0

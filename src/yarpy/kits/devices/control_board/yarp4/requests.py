@@ -165,7 +165,7 @@ class FunctionRequests(Closeable):
         self.ask("setRemoteVariable", name, Bottle(values))
 
     def variable_names(self) -> list[str]:
-        """Which ones there are."""
+        """Return the names of the variables."""
         return [str(item) for found in self.ask("getRemoteVariablesList")[0] for item in found]
 
     def ask(self, name: str, *arguments: Any, timeout: float | None = TIMEOUT) -> list[Any]:

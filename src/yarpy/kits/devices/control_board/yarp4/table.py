@@ -138,7 +138,7 @@ class DetailsShape(Shape):
 
 
 class TorqueShape(Shape):
-    """How a motor produces torque."""
+    """The parameters by which a motor produces torque, as one value."""
 
     def spread(self, value: Any) -> list[Any]:
         return [TorqueParameters(*map(float, value))]
