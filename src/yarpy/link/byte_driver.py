@@ -46,7 +46,11 @@ class ByteDriver(Driver):
     def __init__(self, transport: Transport, stream: ByteStream) -> None:
         super().__init__(transport, stream)
         self._beside = stream if isinstance(stream, AsideStream) else None
-        self._plain = type(stream) is ByteStream  # its calls may be spelled out
+        kind = type(stream)
+        self._plain = (  # its calls may be spelled out
+            kind.get_buffer is ByteStream.get_buffer
+            and kind.buffer_updated is ByteStream.buffer_updated
+        )
         if isinstance(stream, FrameStream):
             self.whole = False  # what is inside the frames is found in many steps
         system = transport if isinstance(transport, SocketTransport) else None

@@ -217,8 +217,12 @@ class RpcClient(BasePort, Generic[T]):
         question that never left is asked again by itself. WrongPort when another port listens where
         it was, LocalProtocolError when no server is connected, PortClosed.
         """
-        message = self.ask(
-            args[0] if len(args) == 1 and _is_message(args[0]) else Bottle(args), timeout
+        hub = self._hub
+        if hub.life.closing or hub.life.interrupted:
+            self._check_open()
+        question = args[0] if len(args) == 1 and _is_message(args[0]) else Bottle(args)
+        message = hub.life.calls.run(
+            self._timeout if timeout is None else timeout, self._ask, Packet(question, key=CALL)
         )
         if message is None:
             return Bottle()

@@ -341,7 +341,8 @@ class SocketTransport(Answerable):
             return not self.sock.recv(1, _MSG_PEEK)
         except BlockingIOError:
             return False
-        except OSError:
+        except OSError as error:
+            self.failed(error)
             return True
 
     def interrupt(self) -> None:

@@ -20,7 +20,7 @@ from typing import Final
 from yarpy import scope
 from yarpy.errors import LocalProtocolError, Timeout
 from yarpy.platform.user import user
-from yarpy.transports.base import MSG_DONTWAIT, Address, Transport
+from yarpy.transports.base import Address, Transport
 from yarpy.transports.opener import Elsewhere, Opener
 from yarpy.transports.tcp import TcpTransport
 
@@ -147,17 +147,6 @@ class UnixTransport(TcpTransport):
             return sent - self.sock.getsockopt(socket.SOL_SOCKET, socket.SO_SNDBUF), False
         except (OSError, ValueError):  # or another thread has closed the socket
             return None
-
-    def ended(self) -> bool:
-        if not self.wait_readable(0.0):
-            return False
-        try:
-            return not self.sock.recv(1, socket.MSG_PEEK | MSG_DONTWAIT)
-        except BlockingIOError:
-            return False
-        except OSError as error:
-            self.failed(error)
-            return True
 
     def failed(self, error: OSError) -> None:
         self._reset = self._reset or isinstance(error, ConnectionResetError)

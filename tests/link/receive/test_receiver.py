@@ -44,6 +44,7 @@ def test_messages_are_handed_on_and_acknowledged() -> None:
     assert owner.ended == [("", True)]
     assert transport.closed
     assert link.counter.messages == 2  # a goodbye is none
+    assert link.counter.period > 0
     assert link.counter.bytes > 0
 
 

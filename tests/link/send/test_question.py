@@ -39,6 +39,16 @@ def test_question_and_answer() -> None:
     assert transport.said == b"".join(framing.encode(Packet(["ask"], key=CALL)))  # type: ignore[arg-type]
 
 
+def test_a_question_that_fails_is_no_message_that_was_carried() -> None:
+    with connected(Tcp) as (link, far):
+        far.sendall(Bottle(["ok"]).to_bytes() + ACK)
+        link.call(Packet(["ask"], key=CALL), moment(5))
+        assert link.counter.messages == 1
+        with pytest.raises(Timeout):
+            link.call(Packet(["ask"], key=CALL), moment(0.05))
+        assert link.counter.messages == 1
+
+
 def test_question_without_an_answer() -> None:
     link, _ = open_link(Tcp, ACK)
     assert link.call(Packet(["ask"], key=CALL), moment(5)) is None

@@ -24,6 +24,7 @@ from typing import Final
 
 from yarpy.carriers.base import Indexed
 from yarpy.carriers.own.tcp import Tcp
+from yarpy.data.codec import LISTS
 from yarpy.errors import LocalProtocolError, RemoteProtocolError
 from yarpy.facts import MAGIC_SIZE
 from yarpy.log import logger
@@ -124,6 +125,12 @@ class Memory(Indexed):
         return self._placed(packet) is not None or super().prepare(packet)
 
     def encode(self, stream: ByteStream, packet: Packet) -> None:
+        framed = packet.framed
+        if framed is None and type(packet.value) in LISTS:  # most often small: two steps less
+            framed = framing.encode(packet)
+        if framed is not None and len(framed) == 1:
+            stream.output += framed
+            return
         memory, blocks = self._memory, packet.blocks
         parcel = None
         if memory is not None and (len(blocks) > 1 or len(blocks[0]) >= LARGE):

@@ -83,6 +83,7 @@ class Receiver:
         self._armed = False  # a wait is limited for the sake of a message that had begun
         self._due = 0.0  # deadline of a message that has begun; 0: none has
         self._unsent_acks = 0
+        self._paced = 0.0  # when a message came whose pace is not measured yet; 0: none
 
     # -- reading ----------------------------------------------------------------------------------
 
@@ -90,6 +91,9 @@ class Receiver:
         """Return the next message, which stays `held` until it is released. Raises Timeout (what
         came is kept), LinkClosed."""
         driver, carrier = self.driver, self.carrier
+        if self._paced:  # now, while the peer has its answer
+            self.counter.count(self._paced, 0)
+            self._paced = 0.0
         if self._cut:
             self._begin_again()
         if self.held is None and self.spare is not None:
@@ -159,10 +163,9 @@ class Receiver:
             counter.bytes = driver.bytes_in
             if self._beside is not None:
                 counter.bytes += self._beside.came_aside
-            now = time.perf_counter()
+            self._paced = time.perf_counter()
             counter.messages += 1
             self.stage = COUNTED  # at once, that no message is counted twice
-            counter.count(now, 0)
         return message
 
     def _begin_again(self) -> None:

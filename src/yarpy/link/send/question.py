@@ -29,6 +29,7 @@ def exchange(
     driver, carrier, counter = sender.driver, sender.carrier, sender.counter
     stream, started = driver.stream, time.perf_counter()
     allowed = 0.0 if until is None else round(until - time.monotonic(), 2)
+    counted = False
     try:
         sender.asking = True
         if sender.ending.reason:  # behind that: who ends the port looks the other way round
@@ -42,6 +43,10 @@ def exchange(
         carrier.encode(stream, packet.newest if newest else packet)
         if (sender.gathered or not driver.push()) and not sender.flush(until):
             raise Timeout("the peer does not read what is sent")
+        # What need not be done before the question leaves is done while the peer works on it.
+        counter.count(started)
+        counted = True
+        counter.bytes = driver.bytes_out
         if carrier.ping[1]:
             sender.listen(True)
         if stream.head == stream.tail:
@@ -51,12 +56,11 @@ def exchange(
             reply = driver.run(carrier.expect_reply(stream), until, incoming)
         if carrier.acks and not carrier.parse_acks(stream, 1):
             driver.run(carrier.expect_ack(stream), until)
-        now = time.perf_counter()
-        counter.count(now)
-        counter.bytes = driver.bytes_out
-        counter.measure(now - started)
+        counter.measure(time.perf_counter() - started)
         return reply
     except BaseException as error:
+        if counted:
+            counter.messages -= 1
         if interrupts(error):
             sender.give_up()
         if isinstance(error, YarpError):
