@@ -31,7 +31,7 @@ from yarpy.errors import (
     RemoteProtocolError,
     UnknownType,
 )
-from yarpy.kits.thrift.interface import text_interface
+from yarpy.kits.thrift.include import text_interface
 from yarpy.kits.thrift.module import python
 from yarpy.limit import HTTP_CHALLENGES
 from yarpy.monitors.constraint import Constraint

@@ -7,7 +7,7 @@ import pytest
 
 from yarpy import idl
 from yarpy.errors import DecodeError
-from yarpy.kits.thrift.interface import read_interface
+from yarpy.kits.thrift.include import read_interface
 from yarpy.kits.thrift.library import load, loads
 from yarpy.kits.thrift.module import stubs
 

@@ -12,7 +12,7 @@ from support.type_check import type_check
 from support.wait import HANG
 
 from yarpy.errors import DecodeError
-from yarpy.kits.thrift.interface import read_interface, text_interface
+from yarpy.kits.thrift.include import read_interface, text_interface
 from yarpy.kits.thrift.library import load, loads
 from yarpy.kits.thrift.module import python, stubs
 

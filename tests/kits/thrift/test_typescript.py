@@ -13,7 +13,7 @@ from support.wait import HANG
 
 import yarpy
 from yarpy.errors import DecodeError
-from yarpy.kits.thrift.interface import read_interface, text_interface
+from yarpy.kits.thrift.include import read_interface, text_interface
 from yarpy.kits.thrift.typescript import runtime, typescript
 
 SHARED = """

@@ -29,7 +29,7 @@ from yarpy.kits.thrift.apache import client as apache
 from yarpy.kits.thrift.kind import BOOL, VOCAB, flat
 from yarpy.kits.thrift.method import Method
 from yarpy.kits.thrift.payload import FAILURE, VERSION, Payload
-from yarpy.kits.thrift.wire import reader
+from yarpy.kits.thrift.wire.cursor import spread
 from yarpy.kits.thrift.wire.extent import is_version, version_ending
 from yarpy.kits.thrift.wire.writer import FAIL
 
@@ -289,7 +289,7 @@ def told(answer: Buffer) -> tuple[str, str]:
     """The reason that was asked for, and the kind of an exception; "" from servers that know no
     such question."""
     try:
-        found = Bottle.from_bytes(reader.spread(answer))
+        found = Bottle.from_bytes(spread(answer))
     except DecodeError:
         return "", ""
     if not 0 < len(found) < 3 or type(found[0]) is not str:

@@ -24,6 +24,7 @@ from yarpy.errors import DecodeError, RemoteProtocolError, Timeout
 from yarpy.kits.thrift.kind import flat, is_struct, name_of
 from yarpy.kits.thrift.payload import Payload, many, word_at
 from yarpy.kits.thrift.wire import reader, writer
+from yarpy.kits.thrift.wire.cursor import Cursor, skip, spread
 from yarpy.log import logger
 
 log = logger("yarpy.idl")
@@ -53,14 +54,14 @@ class Editor:
     def __call__(self, message: Any) -> Any:
         """Answer a message."""
         try:
-            return self._answer(reader.spread(message.to_bytes()))
+            return self._answer(spread(message.to_bytes()))
         except DecodeError as error:
             log.warning("%s: message of %s: %s", self._struct.__name__, message.source, error)
             return Bottle([Vocab("fail"), str(error)])
 
     def _answer(self, view: Buffer) -> Any:
         data = bytes(view)
-        cursor = reader.Cursor(data, 8)
+        cursor = Cursor(data, 8)
         if cursor.at == cursor.end:
             return Bottle([_HINT])
         word = word_at(cursor, "the first word")
@@ -72,15 +73,15 @@ class Editor:
             self._set(field.attribute, value)
         return Payload(_OK)
 
-    def _patch(self, cursor: reader.Cursor) -> list[tuple[Any, Any]]:
+    def _patch(self, cursor: Cursor) -> list[tuple[Any, Any]]:
         found = []
         while cursor.at < cursor.end:
             start = cursor.at
             if not cursor.tag("a patch") & GROUP_MASK:
                 raise DecodeError("a patch has lists of three: (set FIELD VALUE)")
             cursor.at = start
-            reader.skip(cursor, "a patch")
-            part = reader.Cursor(reader.spread(cursor.data[start : cursor.at]), 4)
+            skip(cursor, "a patch")
+            part = Cursor(spread(cursor.data[start : cursor.at]), 4)
             if part.tag("a patch") != 3:
                 raise DecodeError("a patch has lists of three: (set FIELD VALUE)")
             word_at(part, "what to do")
@@ -89,13 +90,13 @@ class Editor:
                 raise DecodeError(f"{found[-1][0].name}: something is left over")
         return found
 
-    def _pairs(self, cursor: reader.Cursor) -> list[tuple[Any, Any]]:
+    def _pairs(self, cursor: Cursor) -> list[tuple[Any, Any]]:
         found = []
         while cursor.at < cursor.end:
             found.append(self._change(cursor))
         return found
 
-    def _change(self, cursor: reader.Cursor) -> tuple[Any, Any]:
+    def _change(self, cursor: Cursor) -> tuple[Any, Any]:
         name = word_at(cursor, "a field")
         field = next((each for each in self._struct._specs() if each.name == name), None)
         if field is None:

@@ -37,6 +37,7 @@ from yarpy.kits.thrift.kind import (
 )
 from yarpy.kits.thrift.structure import _New
 from yarpy.kits.thrift.wire import fast_reader, fast_writer, reader
+from yarpy.kits.thrift.wire.cursor import pair, spread
 from yarpy.kits.thrift.wire.extent import Ending, ending_of, yarp4_ending_of
 from yarpy.kits.thrift.word import SERVICE, original
 
@@ -232,14 +233,14 @@ class Method:
         if isinstance(result, External):
             return codec.decode_as(data, reader.class_of(result))
         try:
-            return self._load_result(reader.spread(data), 8)[0]
+            return self._load_result(spread(data), 8)[0]
         except DecodeError as error:
             if not self.answers_floats:
                 raise
             try:
-                if reader.pair(data, 0)[0] == LIST:
+                if pair(data, 0)[0] == LIST:
                     return self._load_result(data, 8, True)[0]
-                return self._load_result(reader.spread(to_yarp3(data)), 8)[0]
+                return self._load_result(spread(to_yarp3(data)), 8)[0]
             except DecodeError:
                 raise error from None
 
@@ -320,7 +321,7 @@ def _maker(default: Any) -> Callable[[], Any]:
 
 def first_word(data: bytes, at: int) -> tuple[str, int, int]:
     """The word that begins at a place, the place behind it, and its tag. DecodeError."""
-    tag, length = reader.pair(data, at)
+    tag, length = pair(data, at)
     if tag == VOCAB32:
         word = length.to_bytes(4, "little", signed=True).rstrip(b"\0").decode("utf-8", "replace")
         return word, at + 8, tag

@@ -12,7 +12,7 @@ from typing import Any
 from yarpy.data.bottle import Bottle
 from yarpy.data.value import Buffer
 from yarpy.errors import DecodeError
-from yarpy.kits.thrift.wire import reader
+from yarpy.kits.thrift.wire.cursor import spread
 
 #: the name of the service, of the method, and the arguments
 Observed = tuple[str, str, Bottle]
@@ -28,7 +28,7 @@ class Interface:
     def request(self, data: Buffer) -> Observed | None:
         """Decode a request; None if its method is unknown."""
         try:
-            items = Bottle.from_bytes(bytes(reader.spread(data)))
+            items = Bottle.from_bytes(bytes(spread(data)))
         except DecodeError:
             return None
         name = ""

@@ -10,8 +10,9 @@ from typing import Final
 
 from yarpy.data.value import LIST, STRING, VOCAB32, Buffer
 from yarpy.kits.thrift.kind import TEXT
+from yarpy.kits.thrift.wire.cursor import Cursor
 from yarpy.kits.thrift.wire.extent import Ending
-from yarpy.kits.thrift.wire.reader import Cursor, get
+from yarpy.kits.thrift.wire.reader import get
 
 _MANY: Final = 0x796E616D
 

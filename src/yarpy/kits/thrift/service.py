@@ -35,7 +35,7 @@ from yarpy.kits.thrift.apache.message import Call
 from yarpy.kits.thrift.kind import namespace_of
 from yarpy.kits.thrift.method import Method, first_word
 from yarpy.kits.thrift.payload import FAILURE, VERSION, Payload, many
-from yarpy.kits.thrift.wire import reader
+from yarpy.kits.thrift.wire.cursor import spread
 from yarpy.log import logger
 
 log = logger("yarpy.idl")
@@ -85,7 +85,7 @@ class Service:
             return serve.answer(self, message)
         person = message.spelling == "text" or message.source == "web"
         try:
-            data = bytes(reader.spread(message.to_bytes()))
+            data = bytes(spread(message.to_bytes()))
             name, at, by_hand = self._named(data)
             person = person or by_hand
             method = self._methods.get(name)

@@ -45,6 +45,7 @@ from yarpy.kits.thrift.kind import (
     without_none,
 )
 from yarpy.kits.thrift.wire import fast_reader, fast_writer, reader
+from yarpy.kits.thrift.wire.cursor import pair, spread
 from yarpy.kits.thrift.word import ERROR, STRUCT, original
 from yarpy.limit import THRIFT_VALUES
 
@@ -179,13 +180,13 @@ class Struct:
         if loads is None:
             parts = [Part("", cls)]
             loads = cls._whole_ = fast_reader.load(cls.__name__, parts)  # type: ignore[attr-defined]
-        count = reader.pair(view, 0)[1]
+        count = pair(view, 0)[1]
         if count != cls._flat():
             names = " ".join(cls._attributes)
             raise DecodeError(
                 f"{cls.__name__} has {cls._flat()} elements ({names}), here are {count}"
             )
-        found: Self = loads(reader.spread(view), 8)[0]
+        found: Self = loads(spread(view), 8)[0]
         return found
 
     def to_bottle(self) -> Bottle:

@@ -14,7 +14,8 @@ from yarpy.data.value import Float32, Int8, Int16, Int64, Vocab
 from yarpy.errors import DecodeError, Truncated
 from yarpy.kits.thrift import kind as kinds
 from yarpy.kits.thrift.kind import External, Kind, ListOf, MapOf, SetOf
-from yarpy.kits.thrift.wire.reader import Cursor, get, pair, skip, spread
+from yarpy.kits.thrift.wire.cursor import Cursor, spread
+from yarpy.kits.thrift.wire.reader import get
 
 
 def read(kind: Kind, *items: Any) -> Any:
@@ -132,23 +133,6 @@ def test_elements_are_limited(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setenv("YARPY_MAX_ELEMENTS", "10")
     with pytest.raises(DecodeError, match="more than 10 elements"):
         read(ListOf(kinds.TEXT), ["a"] * 11)
-
-
-def test_depth_is_limited() -> None:
-    with pytest.raises(DecodeError, match="lists within each other"):
-        skip(Cursor(b"\0\1\0\0\1\0\0\0" * 200), "v")
-
-
-def test_spread_gives_each_element_its_tag() -> None:
-    for items in (["a", "bc"], [1, 2], [], [b"x", b""], [Vocab("a")]):
-        mixed = Bottle([*items, [1]]).to_bytes()
-        data = spread(Bottle(items).to_bytes())
-        assert bytes(data)[8:] == mixed[8 : len(data)]
-    for bad in (b"", b"\0\1\0\0", b"\1\0\0\0\1\0\0\0", b"\7\1\0\0\1\0\0\0\0\0\0\0"):
-        with pytest.raises(DecodeError):
-            spread(bad)
-    with pytest.raises(Truncated):
-        pair(b"1234567", 0)
 
 
 @settings(max_examples=300)

@@ -30,6 +30,7 @@ from yarpy.kits.thrift.kind import (
     size_of,
 )
 from yarpy.kits.thrift.wire import reader
+from yarpy.kits.thrift.wire.cursor import Cursor
 from yarpy.kits.thrift.wire.writer import FAIL, OK
 
 #: structs in a struct are read in the same function up to so many values of them
@@ -59,7 +60,7 @@ def load(path: str, parts: Sequence[Part], defaults: Sequence[Callable[[], Any]]
     first_default = len(parts) - len(defaults)
 
     def slow(data: Buffer, at: int, tagged_sets: bool, yarp4: bool) -> tuple[Any, ...]:
-        cursor = reader.Cursor(data, at, tagged_sets, yarp4)
+        cursor = Cursor(data, at, tagged_sets, yarp4)
         values = []
         for number, part in enumerate(parts):
             if cursor.at == cursor.end and number >= first_default:
@@ -248,7 +249,7 @@ def load_struct(kind: Any) -> Callable[[Buffer, int, int], tuple[Any, int]]:
 
 
 def _get(kind: Kind, data: Buffer, at: int, path: str) -> tuple[Any, int]:
-    cursor = reader.Cursor(data, at)
+    cursor = Cursor(data, at)
     try:
         found = reader.get(kind, cursor, path)
     except DecodeError:

@@ -17,7 +17,6 @@ from __future__ import annotations
 
 from importlib import import_module
 from struct import Struct as Packing
-from struct import error as struct_error
 from typing import Any, Final
 
 from yarpy.data import codec
@@ -35,13 +34,12 @@ from yarpy.data.value import (
     STRING,
     UNIT_MASK,
     VOCAB32,
-    Buffer,
     Float32,
     Vocab,
 )
 from yarpy.data.walker import sound_size
-from yarpy.data.yarp4 import FLOAT32_4, FLOAT64_4, to_yarp3
-from yarpy.errors import DecodeError, Truncated
+from yarpy.data.yarp4 import to_yarp3
+from yarpy.errors import DecodeError
 from yarpy.kits.thrift.kind import (
     BINARY,
     BOOL,
@@ -59,84 +57,16 @@ from yarpy.kits.thrift.kind import (
     is_enum,
     name_of,
 )
+from yarpy.kits.thrift.wire.cursor import Cursor, bytes_of, number_of, other_kind, reads_list, skip
 from yarpy.kits.thrift.wire.writer import FAIL
-from yarpy.limit import THRIFT_LISTS, limits
 
 _I32: Final = Packing("<i").unpack_from
-_PAIR: Final = Packing("<ii").unpack_from
-_PACK: Final = Packing("<i").pack
 _PACK_PAIR: Final = Packing("<ii").pack
-_UNPACK: Final = {tag: Packing("<" + letter).unpack_from for tag, (letter, _) in FIXED.items()}
-
-#: tags of YARP 4.0 to those of 3.x; one that it has no more to one that nobody has
-_NAMES: Final = {FLOAT64_4: FLOAT64, FLOAT32_4: FLOAT32, FLOAT32: 0xFF}
 
 #: how a Sound of YARP 3.9 begins, which is no Bottle
 _RAW_SOUND: Final = Packing("<iii").pack(LIST, 4, 0)
 
 _INTEGERS: Final = frozenset((INT8, INT16, INT32, INT64))
-_WHAT: Final = {
-    INT32: "an int32", STRING: "a string", VOCAB32: "a vocab", FLOAT64: "a float64",
-    BLOB: "a blob", INT64: "an int64", INT8: "an int8", INT16: "an int16", FLOAT32: "a float32",
-}  # fmt: skip
-
-
-class Cursor:
-    """A place in a message. `tagged_sets`: sets are as C++ writes them. `yarp4`: it comes from
-    YARP 4.0."""
-
-    __slots__ = ("at", "data", "depth", "end", "room", "tagged_sets", "yarp4")
-
-    def __init__(
-        self, data: Buffer, at: int = 0, tagged_sets: bool = False, yarp4: bool = False
-    ) -> None:
-        self.data = data
-        self.at = at
-        self.end = len(data)
-        self.room = limits().elements
-        self.depth = 0
-        self.tagged_sets = tagged_sets
-        self.yarp4 = yarp4
-
-    def tag(self, path: str) -> int:
-        """The tag of an element, or the header of a list, as YARP 3.x has it."""
-        found = self.number(path)
-        if not self.yarp4:
-            return found
-        kind = found & UNIT_MASK
-        return found - kind + _NAMES.get(kind, kind)
-
-    def number(self, path: str) -> int:
-        if self.at + 4 > self.end:
-            raise Truncated(f"{path} is missing", self.at + 4)
-        found: int = _I32(self.data, self.at)[0]
-        self.at += 4
-        return found
-
-    def count(self, path: str, least: int) -> int:
-        """Return how many elements follow, of at least `least` bytes each."""
-        count = self.number(path)
-        if count < 0 or self.at + count * least > self.end:
-            raise Truncated(
-                f"{path}: {count} elements are announced, there are {self.end - self.at} bytes"
-            )
-        self.room -= count
-        if self.room < 0:
-            raise DecodeError(
-                f"{path}: more than {limits().elements} elements (YARPY_MAX_ELEMENTS)"
-            )
-        return count
-
-    def take(self, count: int, path: str) -> Buffer:
-        start, self.at = self.at, self.at + count
-        if count < 0 or self.at > self.end:
-            raise Truncated(f"{path} takes {count} bytes, there are {self.end - start}")
-        return self.data[start : self.at]
-
-    def enter(self, path: str) -> None:
-        self.depth += 1
-        if self.depth > THRIFT_LISTS:
-            raise DecodeError(f"{path}: more than {THRIFT_LISTS} lists within each other")
 
 
 def get(kind: Kind, cursor: Cursor, path: str, nested: bool = False) -> Any:
@@ -180,7 +110,7 @@ def _nested(kind: Any, cursor: Cursor, path: str, code: int | None) -> Any:
         return _value(kind, cursor, path, code)
     tag = cursor.tag(path) if code is None else code
     if not tag & LIST:
-        raise _other(f"a list for {name_of(kind)}", tag, cursor, path)
+        raise other_kind(f"a list for {name_of(kind)}", tag, cursor, path)
     cursor.enter(path)
     count = cursor.count(path, 1)
     wanted = flat(kind)
@@ -193,7 +123,7 @@ def _nested(kind: Any, cursor: Cursor, path: str, code: int | None) -> Any:
 
 def _list(kind: ListOf | SetOf, tag: int, cursor: Cursor, path: str) -> Any:
     if not tag & LIST:
-        raise _other("a list", tag, cursor, path)
+        raise other_kind("a list", tag, cursor, path)
     element, code = kind.element, tag & UNIT_MASK
     is_numbers = isinstance(element, Scalar) and element.is_number and code == element.code
     if isinstance(element, Scalar) and is_numbers and isinstance(kind, ListOf):
@@ -228,14 +158,14 @@ def _array(element: Scalar, cursor: Cursor, path: str) -> Any:
 
 def _map(kind: MapOf, tag: int, cursor: Cursor, path: str) -> dict[Any, Any]:
     if not tag & LIST:
-        raise _other("a list of pairs", tag, cursor, path)
+        raise other_kind("a list of pairs", tag, cursor, path)
     cursor.enter(path)
     found: dict[Any, Any] = {}
     outer = tag & UNIT_MASK
     for at in range(cursor.count(path, FIXED[outer][1] if outer in FIXED else 4)):
         pair = outer or cursor.tag(path)
         if not pair & LIST:
-            raise _other("a pair of key and value", pair, cursor, f"{path}[{at}]")
+            raise other_kind("a pair of key and value", pair, cursor, f"{path}[{at}]")
         cursor.number(path)  # two, and not checked by C++ either
         code = pair & UNIT_MASK or None
         key = _value(kind.key, cursor, f"{path}, key {at}", code)
@@ -255,35 +185,35 @@ def scalar(kind: Scalar, tag: int, cursor: Cursor, path: str) -> Any:
     """A number, word, string or blob behind its tag."""
     if kind is TEXT:
         if tag == STRING:
-            return str(_bytes(cursor, path), "utf-8", "surrogateescape")
+            return str(bytes_of(cursor, path), "utf-8", "surrogateescape")
         if tag == VOCAB32:
             return str.__str__(Vocab.from_code(cursor.number(path)))
-        raise _other("a string", tag, cursor, path)
+        raise other_kind("a string", tag, cursor, path)
     if kind is BINARY:
         if tag in (BLOB, STRING):
-            return bytes(_bytes(cursor, path))
-        raise _other("a blob", tag, cursor, path)
+            return bytes(bytes_of(cursor, path))
+        raise other_kind("a blob", tag, cursor, path)
     if kind is BOOL:
         if tag in (INT32, VOCAB32):
             return cursor.number(path) not in (0, FAIL)
-        raise _other("true or false", tag, cursor, path)
+        raise other_kind("true or false", tag, cursor, path)
     if kind is VOCAB:
         if tag == VOCAB32:
             return Vocab.from_code(cursor.number(path))
         if tag == STRING:
-            text = bytes(_bytes(cursor, path))
+            text = bytes(bytes_of(cursor, path))
             if len(text) <= 4:
                 return Vocab(text.decode("utf-8", "surrogateescape"))
             raise DecodeError(f"{path}: expected a word of four bytes at most, got {text[:40]!r}")
-        raise _other("a word", tag, cursor, path)
+        raise other_kind("a word", tag, cursor, path)
     if kind.letter in "fd":
         if tag in _INTEGERS or tag in (FLOAT32, FLOAT64):
-            number = float(_fixed(tag, cursor, path))
+            number = float(number_of(tag, cursor, path))
             return float(Float32(number)) if kind is FLOAT and tag != FLOAT32 else number
-        raise _other("a number", tag, cursor, path)
+        raise other_kind("a number", tag, cursor, path)
     if tag in _INTEGERS or (tag == VOCAB32 and kind.code == INT32 and kind is not SIZE):
-        return _fitting(kind, _fixed(tag, cursor, path), path)
-    raise _other(f"an integer ({kind})", tag, cursor, path)
+        return _fitting(kind, number_of(tag, cursor, path), path)
+    raise other_kind(f"an integer ({kind})", tag, cursor, path)
 
 
 def _fitting(kind: Scalar, number: int, path: str) -> int:
@@ -298,37 +228,23 @@ def _fitting(kind: Scalar, number: int, path: str) -> int:
 
 def _enum(kind: Any, tag: int, cursor: Cursor, path: str) -> Any:
     if tag == STRING:
-        name = str(_bytes(cursor, path), "utf-8", "replace")
+        name = str(bytes_of(cursor, path), "utf-8", "replace")
         try:
             return kind[name]
         except KeyError:
             names = ", ".join(kind.__members__)
             raise DecodeError(f"{path}: {kind.__name__} is one of {names}, not {name!r}") from None
     if tag not in _INTEGERS and tag != VOCAB32:
-        raise _other(f"a {kind.__name__}", tag, cursor, path)
-    number = _fixed(tag, cursor, path)
+        raise other_kind(f"a {kind.__name__}", tag, cursor, path)
+    number = number_of(tag, cursor, path)
     return kind._value2member_map_.get(number, number)
-
-
-def _fixed(tag: int, cursor: Cursor, path: str) -> Any:
-    size = FIXED[tag][1]
-    try:
-        found = _UNPACK[tag](cursor.data, cursor.at)[0]
-    except struct_error:
-        raise Truncated(f"{path} is cut off", cursor.at + size) from None
-    cursor.at += size
-    return found
-
-
-def _bytes(cursor: Cursor, path: str) -> Buffer:
-    return cursor.take(cursor.number(path), path)
 
 
 def _external(kind: External, cursor: Cursor, path: str, code: int | None) -> Any:
     """The elements of a type that reads itself."""
     start = cursor.at
     if code is not None or (kind.python and not reads_list(cursor, path)):
-        raise _other(kind.name, cursor.tag(path) if code is None else code, cursor, path)
+        raise other_kind(kind.name, cursor.tag(path) if code is None else code, cursor, path)
     raw = bytes(cursor.data[start : start + 12]) == _RAW_SOUND
     if raw:
         cursor.take(sound_size(cursor.take(40, path)) - 40, path)
@@ -348,90 +264,7 @@ def _external(kind: External, cursor: Cursor, path: str, code: int | None) -> An
         raise DecodeError(f"{path}: {error}") from None
 
 
-def reads_list(cursor: Cursor, path: str) -> bool:
-    """Return whether a list begins at the cursor."""
-    tag = cursor.tag(path)
-    cursor.at -= 4
-    return bool(tag & GROUP_MASK)
-
-
 def class_of(kind: External) -> Any:
     """The class of a type that yarpy has; of another, what its bytes are."""
     module, _, name = kind.python.rpartition(".")
     return getattr(import_module(module), name) if module else object
-
-
-def skip(cursor: Cursor, path: str, code: int | None = None) -> None:
-    """Go behind one element of a Bottle, whatever it is."""
-    waiting: list[tuple[int, int]] = [(1, code or 0)]  # how many, and their tag unless it is theirs
-    while waiting:
-        count, fixed = waiting.pop()
-        if not count:
-            continue
-        if fixed in FIXED:
-            cursor.take(count * FIXED[fixed][1], path)
-            continue
-        waiting.append((count - 1, fixed))
-        tag = fixed or cursor.tag(path)
-        if tag in FIXED:
-            cursor.take(FIXED[tag][1], path)
-        elif tag in (STRING, BLOB):
-            _bytes(cursor, path)
-        elif tag & GROUP_MASK:
-            inner = tag & UNIT_MASK
-            least = FIXED[inner][1] if inner in FIXED else 4
-            waiting.append((cursor.count(path, least), inner))
-            if len(waiting) > 2 * THRIFT_LISTS:
-                raise DecodeError(f"{path}: more than {THRIFT_LISTS} lists within each other")
-        else:
-            raise DecodeError(f"{path}: {tag} is no tag of a Bottle")
-
-
-def _other(wanted: str, tag: int, cursor: Cursor, path: str) -> DecodeError:
-    """The error for a value of another kind."""
-    if tag & GROUP_MASK:
-        return DecodeError(f"{path}: expected {wanted}, got a list")
-    if tag == STRING:
-        try:
-            text = str(_bytes(cursor, path), "utf-8", "replace")
-        except DecodeError as error:
-            return error
-        return DecodeError(f"{path}: expected {wanted}, got {text[:40]!r}")
-    if tag in FIXED:
-        try:
-            number = _fixed(tag, cursor, path)
-        except DecodeError as error:
-            return error
-        value = f"[{Vocab.from_code(number)}]" if tag == VOCAB32 else repr(number)
-        return DecodeError(f"{path}: expected {wanted}, got {value}")
-    return DecodeError(f"{path}: expected {wanted}, got {_WHAT.get(tag, f'the tag {tag}')}")
-
-
-def pair(data: Buffer, at: int) -> tuple[int, int]:
-    """Two integers. Truncated if they are not there."""
-    try:
-        found: tuple[int, int] = _PAIR(data, at)
-    except struct_error:
-        raise Truncated("the message ends in the middle", at + 8) from None
-    return found
-
-
-def spread(view: Buffer) -> Buffer:
-    """A list whose elements all have their own tags; the bytes themselves if they have.
-    DecodeError if it is none."""
-    code, count = pair(view, 0)
-    if code == LIST:
-        return view
-    tag = code & UNIT_MASK
-    if not code & GROUP_MASK or (tag and tag not in _WHAT):
-        raise DecodeError(f"a message begins with 256 for a list, not with {code}")
-    cursor = Cursor(bytes(view), 4)
-    count = cursor.count("the message", FIXED[tag][1] if tag in FIXED else 4)
-    pieces = [_PACK_PAIR(LIST, count)]
-    head = _PACK(tag)
-    for _ in range(count):
-        start = cursor.at
-        skip(cursor, "the message", tag)
-        pieces += (head, bytes(cursor.data[start : cursor.at]))
-    pieces.append(bytes(cursor.data[cursor.at :]))
-    return b"".join(pieces)
