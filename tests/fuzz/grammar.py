@@ -12,9 +12,11 @@ from contextlib import suppress
 from dataclasses import dataclass
 from typing import Any
 
+from yarpy.carriers.web.http.argument import read_fields
+from yarpy.carriers.web.http.intent import Request
 from yarpy.carriers.web.http.login import parse_challenges
 from yarpy.carriers.web.http.port_page import page
-from yarpy.carriers.web.http.request import Request, page_asked, read_fields, read_intent
+from yarpy.carriers.web.http.request import page_asked, read_intent
 from yarpy.carriers.web.http.token import taken
 from yarpy.config.configuration import parse_server
 from yarpy.config.ini import parse_ini

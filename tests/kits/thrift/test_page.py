@@ -7,7 +7,7 @@ from typing import Any
 
 from support.thrift import reply
 
-from yarpy.carriers.web.http.request import substitute
+from yarpy.carriers.web.http.argument import substitute
 from yarpy.kits.thrift.library import loads
 from yarpy.kits.thrift.page import page
 

@@ -25,8 +25,9 @@ from wsproto.utilities import generate_nonce
 import yarpy
 from yarpy import registry
 from yarpy.carriers.web.http.asset import KINDS, PREFIX
+from yarpy.carriers.web.http.intent import READS
 from yarpy.carriers.web.http.page import Site
-from yarpy.carriers.web.http.request import MAY, READS
+from yarpy.carriers.web.http.request import MAY
 from yarpy.facts import MAGIC_SIZE
 from yarpy.kits.devices.multi_sensor.server import MultiSensorServer
 from yarpy.kits.launch.page.log_page import LogPage

@@ -340,7 +340,7 @@ def read_stream_options(target: str) -> StreamOptions:
     """
     from urllib.parse import parse_qsl
 
-    from yarpy.carriers.web.http.request import number_of
+    from yarpy.carriers.web.http.argument import number_of
 
     query = target.partition("?")[2]
     found = dict(parse_qsl(query, keep_blank_values=True)) if query.count("&") < 20 else {}

@@ -7,7 +7,8 @@ import re
 import pytest
 
 from yarpy.carriers.web.http.asset import KINDS, asset
-from yarpy.carriers.web.http.request import Refusal, Request, page_asked, read_intent
+from yarpy.carriers.web.http.intent import Refusal, Request
+from yarpy.carriers.web.http.request import page_asked, read_intent
 
 
 def get(path: str) -> Refusal:

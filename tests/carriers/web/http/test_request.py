@@ -9,19 +9,11 @@ from hypothesis import given
 from hypothesis import strategies as st
 from support.steps import measured
 
-from yarpy.carriers.web.http.request import (
-    Intent,
-    Refusal,
-    Request,
-    page_asked,
-    read_fields,
-    read_intent,
-    substitute,
-)
-from yarpy.data import codec
+from yarpy.carriers.web.http.argument import substitute
+from yarpy.carriers.web.http.intent import Intent, Refusal, Request
+from yarpy.carriers.web.http.request import page_asked, read_intent
 from yarpy.data.bottle import Bottle
 from yarpy.data.value import Vocab
-from yarpy.errors import DecodeError
 from yarpy.limit import HTTP_FIELDS
 
 HTML = "text/html,application/xhtml+xml,*/*;q=0.8"
@@ -184,34 +176,6 @@ def test_refused(request_: Request, status: int) -> None:
     found = read_intent(request_)
     assert isinstance(found, Refusal)
     assert found.status == status
-
-
-def test_fields() -> None:
-    assert read_fields("a=1&b=&=c&d&e=x%3Dy&a=2&f+g=%C3%BC") == {
-        "a": "2",
-        "e": "x=y",
-        "f g": "\u00fc",
-    }
-    with pytest.raises(DecodeError):
-        read_fields("&" * HTTP_FIELDS)
-
-
-def test_substitution() -> None:
-    assert substitute("$a$b $ $c.", {"a": "1", "b": "$a"}) == "1$a  ."
-
-
-def test_arguments_in_quotes_stay_one_text() -> None:
-    said = 'C:\\new "$b"\n\r\0 \\'
-    assert codec.decode_text(substitute('say "$a" "$b" $b', {"a": said, "b": "1 2"})) == [
-        "say",
-        said,
-        "1 2",
-        1,
-        2,
-    ]
-    assert substitute('"$a', {"a": '"'}) == '""'
-    with pytest.raises(DecodeError, match="expand to more than"):
-        substitute('"$a"', {"a": '"' * 600_000})
 
 
 @given(

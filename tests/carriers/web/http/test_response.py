@@ -4,10 +4,10 @@ from __future__ import annotations
 
 import pytest
 
+from yarpy.carriers.web.http.intent import Form, Intent, Refusal
 from yarpy.carriers.web.http.message import HTML, JSON, TEXT
 from yarpy.carriers.web.http.origin import origins_of
 from yarpy.carriers.web.http.page import Page
-from yarpy.carriers.web.http.request import Form, Intent, Refusal
 from yarpy.carriers.web.http.response import (
     LATE,
     PRELUDE,

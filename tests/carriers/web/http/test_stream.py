@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 import yarpy
-from yarpy.carriers.web.http.request import Form
+from yarpy.carriers.web.http.intent import Form
 from yarpy.carriers.web.http.stream import part, web_of
 from yarpy.wire.message import Packet
 

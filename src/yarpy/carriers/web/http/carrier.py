@@ -46,7 +46,7 @@ from yarpy.wire.steps import Steps
 from yarpy.wire.stream import ByteStream
 
 if TYPE_CHECKING:
-    from yarpy.carriers.web.http.request import Form, Intent, Request
+    from yarpy.carriers.web.http.intent import Form, Intent, Request
 
 _RIGHTS: Final = ("read", "write", "administer", "attach", "register")
 _METHODS: Final = (b"GET /", b"POST /", b"HEAD /", b"OPTIONS ", b"PUT /", b"DELETE /", b"PATCH /")
@@ -134,7 +134,8 @@ class Http(Carrier):
     def _understood(self, stream: ByteStream, request: Request) -> Steps[Intent | Carrier | None]:
         """Return what the request asks of the port; None if it was answered without the port; a
         carrier if that one takes over."""
-        from yarpy.carriers.web.http.request import MAY, Refusal, likes, page_asked, read_intent
+        from yarpy.carriers.web.http.intent import Refusal
+        from yarpy.carriers.web.http.request import MAY, likes, page_asked, read_intent
 
         headers = self._exchange.headers
         refusal = self.origins.refusal(headers, self.route.host, self._secure)

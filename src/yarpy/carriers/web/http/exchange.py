@@ -22,7 +22,7 @@ from yarpy.wire.stream import ByteStream
 if TYPE_CHECKING:
     import h11
 
-    from yarpy.carriers.web.http.request import Request
+    from yarpy.carriers.web.http.intent import Request
 
 TIME: Final = 60.0  # seconds a connection may be idle, and a request may take to arrive
 
@@ -52,7 +52,7 @@ class Exchange:
         that cannot be read to its end, which is answered if it can be."""
         import h11
 
-        from yarpy.carriers.web.http.request import Request
+        from yarpy.carriers.web.http.intent import Request
 
         talk = h11.Connection(h11.SERVER, max_incomplete_event_size=HTTP_HEAD)
         yield from stream.more(1)

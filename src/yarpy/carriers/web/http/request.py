@@ -15,43 +15,24 @@ from __future__ import annotations
 
 import re
 from collections.abc import Mapping
-from dataclasses import dataclass
-from typing import Any, Final, Literal, Protocol, TypeAlias
+from typing import Any, Final
 
 from yarpy import registry
 from yarpy.carriers.base import PAGE
+from yarpy.carriers.web.http.argument import decoded, number_of, read_fields, substitute
 from yarpy.carriers.web.http.asset import KINDS, PREFIX, asset
-from yarpy.carriers.web.http.message import TEXT
-from yarpy.carriers.web.http.origin import QUESTIONS
+from yarpy.carriers.web.http.intent import Content, Form, Intent, Refusal, Request
 from yarpy.data import codec
 from yarpy.data.bottle import Bottle
 from yarpy.data.json import Outer, from_json
 from yarpy.errors import DecodeError
-from yarpy.limit import HTTP_FIELDS, HTTP_FILLED
 from yarpy.wire import framing
-from yarpy.wire.effects import HEAR
-from yarpy.wire.message import ADMIN, CALL, DATA, JSON, Message, Spelling
-
-Form: TypeAlias = Literal["page", "json", "text", "none", "events", "reply_page"]
+from yarpy.wire.message import ADMIN, CALL, DATA
 
 FORM: Final = "application/x-www-form-urlencoded"
 _OWN: Final = (FORM, "text/plain", "application/json")
-READS: Final = ("*", "?", "h", "r")  # port commands that change nothing
 MAY: Final = "/*/may"  # what whoever asks may do, for pages that show it
-# What requests need of who makes them; `administer` for all others. Whether an administrative
-# message asks or changes something, the port judges.
-_RIGHTS: Final = {
-    **dict.fromkeys(("*", "?", "h", ADMIN), "ask"),
-    "r": HEAR,
-    CALL: "write",
-    DATA: "write",
-}
 
-_FIRST: Final = 40  # bytes among which the first word of a question is
-
-_VARIABLE = re.compile(r"\$([A-Za-z0-9_]*)")
-#: How text within quotes spells what would end them, or change within them.
-_IN_QUOTES = str.maketrans({"\\": r"\\", '"': r"\"", "\n": r"\n", "\r": r"\r", "\0": r"\0"})
 _ABSOLUTE = re.compile(r"[A-Za-z][A-Za-z0-9+.\-]*+://[^/?#]*+")
 # What browsers and crawlers request automatically; not a message to a robot.
 _HABITS: Final = ("apple-touch-icon", ".well-known/", "robots.txt", "sitemap")
@@ -62,82 +43,6 @@ _SPELLINGS: Final[dict[str, Form]] = {
     "sse": "events",
     "events": "events",
 }
-
-
-@dataclass(frozen=True, slots=True)
-class Request:
-    """A request with its body; header names in lower case."""
-
-    method: str
-    target: str
-    headers: Mapping[str, str]
-    body: bytes = b""
-
-
-class Content(Protocol):
-    """The body of a POST as a plug-in of `yarpy.contents` reads it, which is called with it;
-    DecodeError for one that it cannot read."""
-
-    kind: str
-    message: Message
-
-    def reply(self, value: object) -> bytes:
-        """Return the body of the answer to what the port replies; None: to no reply."""
-
-
-@dataclass(frozen=True, slots=True)
-class Intent:
-    """A message or port command (`key`, as in Message), and how to answer it.
-
-    shown: the text to keep in the page's form. pixels: the reader wants whole pictures. rate: the
-    most messages per second that it wants; 0: all. content: what reads the body and writes the
-    answer, of a kind that this carrier does not know. acts: it may change something. asks: it does
-    not, by its first word.
-    """
-
-    key: str
-    form: Form
-    payload: bytes = b""
-    spelling: Spelling = "text"
-    text: str = ""
-    outer: Outer = "auto"
-    shown: str = ""
-    pixels: bool = False
-    rate: float = 0.0
-    content: Content | None = None
-
-    @property
-    def acts(self) -> bool:
-        return self.key not in READS
-
-    @property
-    def asks(self) -> bool:
-        first, _, _ = self.payload[:_FIRST].lstrip().partition(b" ")
-        text = self.spelling == "text" and self.key == CALL
-        return text and first.strip().decode("latin-1") in QUESTIONS
-
-    @property
-    def right(self) -> str:
-        """Return the right that the request needs (`link/begin/admission.py`)."""
-        return _RIGHTS.get(self.key, "administer")
-
-    def message(self, envelope: str = "") -> Message:
-        """The message for the port."""
-        if self.content is not None:
-            return self.content.message
-        text = self.text
-        if self.form == "json" and self.key in (DATA, CALL):
-            text = JSON  # makes a name service answer with values
-        return Message(self.key, self.payload, envelope, self.spelling, text)
-
-
-@dataclass(frozen=True, slots=True)
-class Refusal:
-    """An answer that does not involve the port; a `status` below 400 is not an error."""
-
-    status: int
-    text: str = ""
-    kind: str = TEXT
 
 
 def read_intent(request: Request) -> Intent | Refusal:
@@ -178,7 +83,7 @@ def _read(request: Request) -> Intent | Refusal:
             return Intent(key, _form(request, fields, "page"), text=PAGE if key == "*" else "")
         if len(path) == 1:
             return Intent("*", _form(request, fields, "page"), text=PAGE) if path == "*" else _one()
-        words = _decoded(path).replace("/", " ").strip()
+        words = decoded(path).replace("/", " ").strip()
         fields = {**fields, "data": words}
         default: Form = "page" if likes(request, "text/html") else "text"
         return _asked(request, fields, words, default)
@@ -197,41 +102,7 @@ def page_asked(request: Request) -> tuple[str, dict[str, str]] | None:
         fields = read_fields(query)
     except DecodeError:
         return None
-    return None if fields.keys() & {"cmd", "req", "data"} else ("/" + _decoded(path), fields)
-
-
-def read_fields(query: str) -> dict[str, str]:
-    """The arguments of a query or of a form; those without a name or a value do not count."""
-    pairs = query.split("&")
-    if len(pairs) > HTTP_FIELDS:
-        raise DecodeError(f"more than {HTTP_FIELDS} arguments")
-    found = {}
-    for pair in pairs:
-        key, _, value = pair.partition("=")
-        key, value = _decoded(key), _decoded(value)
-        if key and value:
-            found[key] = value
-    return found
-
-
-def substitute(text: str, fields: Mapping[str, str]) -> str:
-    """`text` with each `$name` replaced by the argument of that name, or by nothing.
-
-    `"$name"` in quotes stays one text, whatever quotes and backslashes the argument has.
-    DecodeError if that would add more than HTTP_FILLED characters."""
-    left = HTTP_FILLED
-
-    def value(match: re.Match[str]) -> str:
-        nonlocal left
-        found = fields.get(match[1], "")
-        if text[match.start() - 1 : match.start()] == text[match.end() : match.end() + 1] == '"':
-            found = found[: HTTP_FILLED + 1].translate(_IN_QUOTES)
-        left -= len(found)
-        if left < 0:  # before it is built: many short names may repeat a long argument
-            raise DecodeError(f"arguments that expand to more than {HTTP_FILLED} characters")
-        return found
-
-    return _VARIABLE.sub(value, text)
+    return None if fields.keys() & {"cmd", "req", "data"} else ("/" + decoded(path), fields)
 
 
 # ---------------------------------------------------------------------------------- inside
@@ -401,20 +272,6 @@ def _reading(request: Request, fields: Mapping[str, str], query: str) -> Intent 
     return Intent("r", form, pixels="pixels" in asked, rate=rate)
 
 
-def number_of(name: str, fields: Mapping[str, str], least: float, most: float) -> float:
-    """The number that a field holds, 0 where there is no such field. Raises ValueError."""
-    text = fields.get(name)
-    if text is None:
-        return 0.0
-    try:
-        value = float(text)
-    except ValueError:
-        value = 0.0
-    if not least <= value <= most:
-        raise ValueError(f"{name} must be a number from {least:g} to {most:g}, not {text[:40]!r}")
-    return value
-
-
 def _reading_form(request: Request, fields: Mapping[str, str], asked: list[str]) -> Form:
     named = fields.get("format")
     if "sse" in asked or named in ("sse", "events"):
@@ -431,9 +288,3 @@ def _reading_form(request: Request, fields: Mapping[str, str], asked: list[str])
 def likes(request: Request, kind: str) -> bool:
     """Return whether the client accepts answers of that MIME type."""
     return kind in request.headers.get("accept", "").lower()
-
-
-def _decoded(text: str) -> str:
-    from urllib.parse import unquote_plus
-
-    return unquote_plus(text, errors="surrogateescape")

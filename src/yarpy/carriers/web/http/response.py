@@ -28,8 +28,8 @@ from yarpy.route import Route
 from yarpy.wire.message import Lines
 
 if TYPE_CHECKING:
+    from yarpy.carriers.web.http.intent import Intent, Refusal
     from yarpy.carriers.web.http.page import Page, Pieces
-    from yarpy.carriers.web.http.request import Intent, Refusal
 
 PRELUDE: Final = 2048  # blanks at the start of an endless page, as in C++, because browsers buffer
 

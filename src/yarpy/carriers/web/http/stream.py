@@ -13,8 +13,8 @@ from __future__ import annotations
 
 from typing import Final
 
+from yarpy.carriers.web.http.intent import Form
 from yarpy.carriers.web.http.message import TEXT
-from yarpy.carriers.web.http.request import Form
 from yarpy.data.bottle import Bottle
 from yarpy.wire.message import Packet
 
