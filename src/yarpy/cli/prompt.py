@@ -15,6 +15,8 @@ from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import Any, Final
 
+from yarpy.platform import input_lines
+
 HISTORY: Final = 1000  # lines kept
 
 Complete = Callable[[], list[str]]
@@ -48,7 +50,7 @@ def history_file(name: str) -> Path:
 
 
 def _piped() -> Iterator[str]:
-    for line in sys.stdin or ():
+    for line in input_lines.lines():
         yield line.rstrip("\r\n")
 
 

@@ -1,6 +1,8 @@
 """`yarpy write`."""
 
 import signal
+import subprocess
+import sys
 from typing import NamedTuple
 
 import pytest
@@ -152,3 +154,48 @@ def test_a_reader_that_was_stopped_is_not_waited_for_for_ever(capsys):
 
 def test_a_connection_that_broke_is_not_waited_for():
     assert taken(Outputs(9, 9), standstill=3600.0)
+
+
+# What Windows asks a program by is Ctrl-Break of a console, which tests have not. wine 8 sends none
+# (GenerateConsoleCtrlEvent: an invalid handle) but Ctrl-C, which a new process group ignores until
+# it does so no more.
+ASKED = """
+import ctypes, signal, subprocess, sys
+COMMAND = '''
+import ctypes, sys
+ctypes.WinDLL("kernel32").SetConsoleCtrlHandler(None, False)
+from yarpy.__main__ import main
+sys.argv = ["yarpy", "write", "/write/asked", "/write/reader"]
+main()
+'''
+import yarpy
+kernel = ctypes.WinDLL("kernel32")
+kernel.SetConsoleCtrlHandler(None, True)
+with (
+    yarpy.BufferedPort("/write/reader") as reader,
+    subprocess.Popen([sys.executable, "-c", COMMAND], stdin=subprocess.PIPE,
+                     creationflags=subprocess.CREATE_NEW_PROCESS_GROUP) as command,
+):
+    command.stdin.write(b"x\\n")
+    command.stdin.flush()
+    print(reader.read().value)
+    event = signal.CTRL_BREAK_EVENT
+    kernel.GenerateConsoleCtrlEvent(event, command.pid) or kernel.GenerateConsoleCtrlEvent(
+        signal.CTRL_C_EVENT, command.pid)
+    print(command.wait(), yarpy.query("/write/asked"))  # its input is still open
+"""
+
+
+@pytest.mark.skipif(sys.platform != "win32", reason="elsewhere a signal ends a read")
+def test_a_console_ends_it_where_nothing_is_typed(cli):
+    done = subprocess.run(
+        [sys.executable, "-c", ASKED],
+        input="",
+        capture_output=True,
+        text=True,
+        timeout=HANG,
+        env=cli.environment,
+        creationflags=getattr(subprocess, "CREATE_NO_WINDOW", 0),
+    )
+    assert done.stdout.splitlines() == ["Bottle(['x'])", "1 None"]
+    assert "Interrupting..." in done.stderr.splitlines()
