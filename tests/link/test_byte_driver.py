@@ -13,7 +13,7 @@ from support.wait import HANG
 from yarpy.errors import Timeout
 from yarpy.link.begin.greeting import driver_of
 from yarpy.link.byte_driver import ByteDriver
-from yarpy.transports.base import SocketTransport
+from yarpy.transports.socket_transport import SocketTransport
 from yarpy.wire.aside_stream import AsideStream
 
 

@@ -16,7 +16,7 @@ from support.wait import HANG
 from yarpy.errors import LinkClosed, LocalProtocolError, RemoteProtocolError, Timeout
 from yarpy.link.begin.greeting import driver_of
 from yarpy.link.driver import link_error
-from yarpy.transports.base import SocketTransport
+from yarpy.transports.socket_transport import SocketTransport
 from yarpy.wire.effects import Switch
 from yarpy.wire.steps import Steps
 from yarpy.wire.stream import ByteStream

@@ -26,7 +26,7 @@ from yarpy.nameserver.local import LocalNames
 from yarpy.port.port import Port
 from yarpy.registry import carriers
 from yarpy.route import Route
-from yarpy.transports.base import SocketTransport
+from yarpy.transports.socket_transport import SocketTransport
 from yarpy.wire import framing
 from yarpy.wire.message import Packet
 

@@ -17,7 +17,7 @@ from yarpy.data.value import Vocab
 from yarpy.link.begin.greeting import driver_of
 from yarpy.link.receive.inbound import Inbound
 from yarpy.route import Route
-from yarpy.transports.base import SocketTransport
+from yarpy.transports.socket_transport import SocketTransport
 from yarpy.wire import framing
 from yarpy.wire.message import Message, Packet
 

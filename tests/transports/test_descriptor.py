@@ -105,6 +105,6 @@ def test_nobody_else_selects() -> None:
         for path in source.rglob("*.py")
         if "select.select(" in path.read_text("utf-8")
     }
-    room = ("base", "descriptor", "polling")
+    room = ("descriptor", "polling", "socket_transport")
     others = {"link/send/readiness.py", "platform/connecting.py"}
     assert found == others | {f"transports/{name}.py" for name in room}

@@ -9,8 +9,9 @@ import time
 from collections.abc import Callable
 
 from yarpy.errors import LocalProtocolError
-from yarpy.transports.base import SocketTransport, Transport
+from yarpy.transports.base import Transport
 from yarpy.transports.opener import Elsewhere, Opener
+from yarpy.transports.socket_transport import SocketTransport
 
 
 class AbstractSockets(Opener):

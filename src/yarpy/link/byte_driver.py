@@ -23,7 +23,8 @@ from typing import Final
 from yarpy.link.cores import cores
 from yarpy.link.driver import Driver, is_foreign, link_error
 from yarpy.link.ending import NOW
-from yarpy.transports.base import MSG_DONTWAIT, SocketTransport, Transport
+from yarpy.transports.base import Transport
+from yarpy.transports.socket_transport import MSG_DONTWAIT, SocketTransport
 from yarpy.wire.aside_stream import AsideStream
 from yarpy.wire.frame_stream import FrameStream
 from yarpy.wire.stream import BUFFER_SIZE, Buffer, ByteStream

@@ -14,10 +14,11 @@ import struct
 import sys
 from collections.abc import Sequence
 
-from yarpy.transports.base import MSG_DONTWAIT, Address, SocketTransport, Transport
+from yarpy.transports.base import Address, Transport
 from yarpy.transports.bind import listening_host
 from yarpy.transports.opener import Elsewhere, Opener
 from yarpy.transports.pace import Pace
+from yarpy.transports.socket_transport import MSG_DONTWAIT, SocketTransport
 from yarpy.wire.stream import Buffer
 
 RECEIVE_BUFFER = 1 << 23

@@ -20,10 +20,11 @@ from yarpy.errors import AddressError
 from yarpy.platform.connecting import Connecting
 from yarpy.route import Route
 from yarpy.threads import Thread
-from yarpy.transports.base import Address, SocketTransport
+from yarpy.transports.base import Address
 from yarpy.transports.bind import listening_host
 from yarpy.transports.opener import CONNECT_TIMEOUT, Elsewhere, Opener
 from yarpy.transports.peer_timeout import Vigil, notice_death
+from yarpy.transports.socket_transport import SocketTransport
 from yarpy.transports.tcp_info import tcp_info
 
 # Bytes on their way to a program on this computer. Left to itself, Linux lets megabytes of an image

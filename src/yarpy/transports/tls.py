@@ -17,8 +17,8 @@ from functools import lru_cache
 from pathlib import Path
 from typing import Any, Final
 
-from yarpy.transports.base import MSG_DONTWAIT
 from yarpy.transports.opener import CONNECT_TIMEOUT, Elsewhere, Opener
+from yarpy.transports.socket_transport import MSG_DONTWAIT
 from yarpy.transports.tcp import TcpTransport, dial
 from yarpy.transports.tls_setting import folder, mutual
 from yarpy.wire.stream import Buffer

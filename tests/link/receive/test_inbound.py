@@ -28,7 +28,7 @@ from yarpy.link.begin.handshake import recognise
 from yarpy.link.receive import turn
 from yarpy.link.receive.inbound import Inbound
 from yarpy.route import Route
-from yarpy.transports.base import MSG_DONTWAIT, SocketTransport
+from yarpy.transports.socket_transport import MSG_DONTWAIT, SocketTransport
 from yarpy.wire import framing
 from yarpy.wire.message import QUIT as QUIT_COMMAND
 from yarpy.wire.message import Message

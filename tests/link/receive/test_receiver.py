@@ -22,7 +22,7 @@ from yarpy.link.receive import receiver
 from yarpy.link.receive.inbound import Inbound
 from yarpy.link.receive.receiver import MAX_UNSENT_ACKS
 from yarpy.route import Route
-from yarpy.transports.base import SocketTransport
+from yarpy.transports.socket_transport import SocketTransport
 from yarpy.wire import framing
 from yarpy.wire.effects import Open, Show, Within
 from yarpy.wire.message import QUIT as QUIT_COMMAND

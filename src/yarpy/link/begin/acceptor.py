@@ -27,7 +27,7 @@ from yarpy.link.cores import cores
 from yarpy.link.flapping import Flapping
 from yarpy.log import logger
 from yarpy.threads import Thread
-from yarpy.transports.base import MSG_DONTWAIT
+from yarpy.transports.socket_transport import MSG_DONTWAIT
 from yarpy.transports.tcp import TcpListener
 
 log = logger("yarpy.link")

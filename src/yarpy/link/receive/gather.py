@@ -25,7 +25,7 @@ from yarpy.link.receive.receiver import FRESH
 from yarpy.link.receive.turn import LEAVING, Lease, Turn
 from yarpy.log import logger
 from yarpy.threads import Thread
-from yarpy.transports.base import SocketTransport
+from yarpy.transports.socket_transport import SocketTransport
 from yarpy.wire.message import DATA
 from yarpy.wire.stream import LARGE
 

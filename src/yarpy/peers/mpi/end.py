@@ -16,8 +16,9 @@ from typing import Final
 from yarpy.errors import LocalProtocolError, RemoteProtocolError
 from yarpy.log import readable
 from yarpy.peers.mpi.library import HINT, Library
-from yarpy.transports.base import MSG_DONTWAIT, Address, Transport
+from yarpy.transports.base import Address, Transport
 from yarpy.transports.descriptor import has_input
+from yarpy.transports.socket_transport import MSG_DONTWAIT
 from yarpy.wire.framing import refused
 from yarpy.wire.stream import Buffer
 

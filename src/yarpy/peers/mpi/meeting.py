@@ -32,7 +32,8 @@ from yarpy.errors import LocalProtocolError, RemoteProtocolError
 from yarpy.log import readable
 from yarpy.peers.mpi.end import MEETING
 from yarpy.peers.mpi.library import HINT, SETTING, permit
-from yarpy.transports.base import Address, SocketTransport
+from yarpy.transports.base import Address
+from yarpy.transports.socket_transport import SocketTransport
 from yarpy.wire.framing import encode_refusal
 
 MOST: Final = 2  # helpers that meet somebody at a time

@@ -24,7 +24,7 @@ from typing import Final
 from yarpy.errors import LocalProtocolError, RemoteProtocolError
 from yarpy.platform.user import user
 from yarpy.threads import undisturbed
-from yarpy.transports.base import MSG_DONTWAIT, Transport
+from yarpy.transports.base import Transport
 from yarpy.transports.descriptor import has_input, opened_pair
 from yarpy.transports.opener import Elsewhere, Opener
 from yarpy.transports.shared.arena import (
@@ -39,6 +39,7 @@ from yarpy.transports.shared.arena import (
 )
 from yarpy.transports.shared.borrowed import OTHERS, Borrowed, Shown, adopted
 from yarpy.transports.shared.lease import Source
+from yarpy.transports.socket_transport import MSG_DONTWAIT
 from yarpy.transports.tcp import TcpTransport
 from yarpy.transports.unix import UnixTransport
 from yarpy.wire.stream import Buffer

@@ -20,11 +20,12 @@ from contextlib import suppress
 from typing import Final
 
 from yarpy.errors import LocalProtocolError, RemoteProtocolError
-from yarpy.transports.base import MSG_DONTWAIT, Address, Transport, address_of
+from yarpy.transports.base import Address, Transport
 from yarpy.transports.descriptor import has_input
 from yarpy.transports.opener import Elsewhere, Opener
 from yarpy.transports.shared.ring import FIRST_SIZE, Ring
 from yarpy.transports.shared.sysv import ELSEWHERE, require
+from yarpy.transports.socket_transport import MSG_DONTWAIT, address_of
 from yarpy.wire.stream import Buffer
 
 TIMEOUT: Final = 5.0  # seconds for the two sides to meet
