@@ -3,12 +3,13 @@
 Rules: a program ends normally, by an exception, by sys.exit, or by SIGTERM or SIGHUP; then all that
 is open has `seconds()` together to send what was written and to give names back; and NAMES beyond
 that for names alone, where a busy computer has used up the rest. After os._exit, and after SIGKILL,
-nobody can do anything. The two signals are heard only where nobody else hears
-them and the system would end the process: a handler of ours is set when the first thing opens in
-the main thread, and taken back when the last one closes there. It closes what is open, in a thread
-of its own, since the frame beneath may hold any lock; then the signal ends the process as it would
-have without us. The main thread hears of a signal; code outside Python that does not return keeps
-it waiting. On Windows the end of the console, and Ctrl-Break, are told by it instead.
+nobody can do anything. The two signals are heard only where nobody else hears them and the system
+would end the process: a handler of ours is set when the first thing opens in the main thread, or
+for an event loop that runs there, and taken back when the last one closes there. It closes what is
+open, in a thread of its own, since the frame beneath may hold any lock; then the signal ends the
+process as it would have without us. The main thread hears of a signal; code outside Python that
+does not return keeps it waiting. On Windows the end of the console, and Ctrl-Break, are told by it
+instead.
 """
 
 from __future__ import annotations
@@ -41,6 +42,7 @@ log = logger("yarpy.linger")
 _open: dict[object, Close] = {}
 _last: list[Callable[[], object]] = []
 _until = 0.0  # when all of it is over, by time.monotonic; 0.0 before the program ends
+_suspended = 0  # the thread that waits in a signal handler until all of it is done
 _begun: set[int] = set()  # the process in which the interpreter calls us at its end
 _signals: Final = tuple(
     getattr(signal, name) for name in ("SIGTERM", "SIGHUP") if hasattr(signal, name)
@@ -67,14 +69,13 @@ def add(thing: object, close: Close) -> None:
     if process not in _begun:
         _begin(process)
     _open[thing] = close
-    _hear()
+    hear()
 
 
 def remove(thing: object) -> None:
     """It was closed."""
     _open.pop(thing, None)
-    if not _open:
-        _hear_no_more()
+    hear_no_more()
 
 
 def at_last(action: Callable[[], object]) -> None:
@@ -123,6 +124,12 @@ def left_for_names() -> float:
     return max(0.0, _until - time.monotonic())
 
 
+def suspends(thread: int) -> bool:
+    """Return whether what `thread` was doing, such as closing something, goes on no more, since it
+    is in our signal handler until `end` has done that."""
+    return thread == _suspended != 0
+
+
 @atexit.register  # before anything that imports this can register, so it is called behind that
 def _end_rest() -> None:
     while _last:
@@ -155,7 +162,8 @@ def _begin(process: int) -> None:
 # -- signals --------------------------------------------------------------------------------------
 
 
-def _hear() -> None:
+def hear() -> None:
+    """Hear the signals, if this is the main thread: what is to be closed then opens in another."""
     if threading.current_thread() is not threading.main_thread():
         return
     for number in _signals:
@@ -164,8 +172,9 @@ def _hear() -> None:
                 signal.signal(number, _end_by)
 
 
-def _hear_no_more() -> None:
-    if threading.current_thread() is not threading.main_thread():
+def hear_no_more() -> None:
+    """Hear the signals no more, if this is the main thread and all is closed."""
+    if _open or threading.current_thread() is not threading.main_thread():
         return
     for number in _signals:
         if signal.getsignal(number) is _end_by:
@@ -179,10 +188,12 @@ def _end_by_console() -> None:
 
 
 def _end_by(number: int, frame: FrameType | None) -> None:
+    global _suspended
     for each in _signals:
         if signal.getsignal(each) is _end_by:
             signal.signal(each, signal.SIG_DFL)  # a second one does not wait
     if _open or _last:
+        _suspended = threading.get_ident()
         thread = threading.Thread(target=_end_all, name="yarpy linger", daemon=True)
         with contextlib.suppress(RuntimeError):  # there can be no more threads
             thread.start()

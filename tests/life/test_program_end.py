@@ -99,6 +99,96 @@ def test_what_was_written_arrives(
     assert yarpy.query("/life/out") is None
 
 
+ASYNC = """
+import asyncio, os, signal, time
+import yarpy
+from yarpy import aio
+
+async def main():
+    async with aio.Port("/life/first", timeout=60):
+        pass
+    async with aio.Port("/life/out", timeout=60) as port:
+        await port.connect("/life/in", timeout=60)
+        for n in range(100):
+            await port.write([n])
+        os.kill(os.getpid(), signal.{name})
+        await asyncio.sleep(60)
+
+asyncio.run(main())
+"""
+
+
+@pytest.mark.parametrize("name", ["SIGTERM", "SIGHUP"])
+def test_a_signal_ends_a_program_of_asyncio_in_good_order(
+    name: str, server: yarpy.NameServer, reader: Reader
+) -> None:
+    """Its ports open in other threads, which can hear no signal."""
+    done = run(server, ASYNC.format(name=name))
+    assert done.returncode == STATUS[name], done.stderr
+    reader.wait_for(100)
+    assert yarpy.query("/life/out") is None
+
+
+def test_an_event_loop_leaves_the_signals_as_they_were(server: yarpy.NameServer) -> None:
+    program = (
+        "import asyncio, signal\nfrom yarpy import aio\n"
+        "async def main():\n"
+        "    async with aio.Port('/life/out', timeout=60):\n"
+        "        assert signal.getsignal(signal.SIGTERM) is not signal.SIG_DFL\n"
+        "    assert signal.getsignal(signal.SIGTERM) is signal.SIG_DFL\n"
+        "    try:\n        await aio.Port('/a b').open()\n"
+        "    except ValueError:\n        pass\n"
+        "    assert signal.getsignal(signal.SIGTERM) is signal.SIG_DFL\n"
+        "asyncio.run(main())\n"
+    )
+    done = run(server, program)
+    assert done.returncode == 0, done.stderr
+
+
+@pytest.mark.parametrize("call", ["register", "introduce"])
+@pytest.mark.parametrize("name", ["SIGTERM", "SIGINT"])
+def test_a_signal_while_a_port_opens_leaves_no_name(
+    name: str, call: str, server: yarpy.NameServer
+) -> None:
+    """It comes when the name server has done what it was asked, and we do not know that yet."""
+    program = (
+        "import os, signal, time\nimport yarpy\nfrom yarpy.names.client import YarpNameClient\n"
+        f"ask = YarpNameClient.{call}\n"
+        "def cut(*words, **more):\n"
+        "    ask(*words, **more)\n"
+        f"    os.kill(os.getpid(), signal.{name})\n"
+        "    time.sleep(60)\n"
+        f"YarpNameClient.{call} = cut\n"
+        "yarpy.Port('/life/out', timeout=60)\n"
+    )
+    done = run(server, program)
+    assert done.returncode == -getattr(signal, name), done.stderr
+    assert yarpy.query("/life/out") is None
+
+
+@pytest.mark.parametrize("call", ["query", "unregister"])
+@pytest.mark.parametrize("name", ["SIGTERM", "SIGINT"])
+def test_a_signal_while_a_port_closes_leaves_no_name(
+    name: str, call: str, server: yarpy.NameServer
+) -> None:
+    """It comes before the name server is asked; what it cut is done by another thread."""
+    program = (
+        "import os, signal, threading, time\nimport yarpy\n"
+        "from yarpy.names.client import YarpNameClient\n"
+        "port = yarpy.Port('/life/out', timeout=60)\n"
+        f"ask = YarpNameClient.{call}\n"
+        "def cut(*words, **more):\n"
+        f"    YarpNameClient.{call} = ask\n"
+        f"    os.kill(os.getpid(), signal.{name})\n"
+        "    time.sleep(60)\n"
+        f"YarpNameClient.{call} = cut\n"
+        "port.close()\n"
+    )
+    done = run(server, program)
+    assert done.returncode == -getattr(signal, name), done.stderr
+    assert yarpy.query("/life/out") is None
+
+
 def test_threads_of_the_program_are_waited_for_first(
     server: yarpy.NameServer, reader: Reader
 ) -> None:

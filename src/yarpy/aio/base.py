@@ -17,6 +17,7 @@ from inspect import isawaitable
 from types import TracebackType
 from typing import Any, Final, Generic, Self, TypeVar
 
+from yarpy import linger
 from yarpy.aio.thread import THREADS, Turn, in_thread
 from yarpy.aio.wakeup import Wakeup
 from yarpy.callback_thread import in_callback_of
@@ -82,6 +83,7 @@ class BasePort(Generic[P]):
         self._loop = asyncio.get_running_loop()
         made: list[P] = []
         wanted = True
+        linger.hear()  # the thread below cannot
 
         def after() -> None:
             for port in made:
@@ -89,6 +91,10 @@ class BasePort(Generic[P]):
                     self._port = port
                 else:
                     THREADS.start(port.close)
+            if self._port is not None:
+                linger.hear()  # once more: another port may have closed meanwhile
+            else:
+                linger.hear_no_more()
             self._opening.release()
 
         opening = asyncio.ensure_future(in_thread(lambda: made.append(self._make()), after))
@@ -112,6 +118,7 @@ class BasePort(Generic[P]):
         self._opening.release()
         if self._port is not None:
             await in_thread(partial(self._port.close, timeout))
+        linger.hear_no_more()
 
     async def __aenter__(self) -> Self:
         return await self.open()

@@ -192,19 +192,24 @@ class Hub:
 
     def open(self, port: int, host: str) -> None:
         """Listen on `port` (0: any free one) and register. Raises AddressError, NoNameServer."""
+        linger.add(self, lambda seconds: self._undo_opening())  # a signal may end the program here
         try:
             self.registration.open(port, host, self.reception.listen)
             self.reception.open()
             self.registration.tell()
         except BaseException:
-            self.life.closing = True
-            self.reception.close()
-            self.registration.forget()
+            self._undo_opening()
+            linger.remove(self)
             raise
         linger.add(self, self._close_at_end)
         self.actions.reconnect.watch(self)
         where = f"tcp://{self.contact.address}/"
         log.info("Port %s active at %s, open to %s", self.name, where, reach())
+
+    def _undo_opening(self) -> None:
+        self.life.closing = True
+        self.reception.close()
+        self.registration.forget()
 
     # -- asked by its inputs and outputs ----------------------------------------------------------
 

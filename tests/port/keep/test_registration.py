@@ -248,6 +248,28 @@ def test_port_that_cannot_be_opened_leaves_nothing_behind(call: str) -> None:
         assert names.query("/here") is None
 
 
+class Cut(LocalNames):
+    """A name service whose answer to `register` is cut by Ctrl-C."""
+
+    def register(
+        self,
+        name: str,
+        carrier: str | None = None,
+        host: str | None = None,
+        port: int | None = None,
+        type_: str | None = None,
+    ) -> Contact:
+        super().register(name, carrier, host, port, type_)
+        raise KeyboardInterrupt
+
+
+def test_port_whose_registering_was_cut_leaves_no_name_behind() -> None:
+    names = Cut()
+    with pytest.raises(KeyboardInterrupt):
+        Port("/here", names=names)
+    assert names.query("/here") is None
+
+
 class Late(LocalNames):
     """A name service that takes more time to hear what a port is than that has for opening."""
 

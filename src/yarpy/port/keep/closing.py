@@ -2,7 +2,8 @@
 
 Rules: one thread does them; another one that closes the same port waits until it has. A frame
 beneath that does them already (of a signal handler, of a callback) is not waited for: it goes on
-when that returns. What a step meets is no reason to leave out the others. After Ctrl-C the steps
+when that returns; where the signal ends the program, the thread that closes everything then does
+them in its place. What a step meets is no reason to leave out the others. After Ctrl-C the steps
 that are left have HURRY seconds, and it is raised behind them, as is what another signal handler
 raises; a step that was cut is done again by the next call.
 """
@@ -14,6 +15,7 @@ import time
 from collections.abc import Callable, Sequence
 from typing import Final
 
+from yarpy import linger
 from yarpy.errors import YarpError
 from yarpy.log import logger
 from yarpy.scope import Scope, apart, outside
@@ -50,7 +52,12 @@ class Closing:
         """Do what is left to do, in so many seconds; the last step has `last` seconds at least,
         whatever the others took. With `wait` False, do nothing if another thread is at it."""
         me = threading.get_ident()
-        if self._closer == me or not self._lock.acquire(blocking=wait):
+        if self._closer == me:
+            return
+        if linger.suspends(self._closer):
+            self._run(seconds, last)
+            return
+        if not self._lock.acquire(blocking=wait):
             return
         try:
             self._closer = me

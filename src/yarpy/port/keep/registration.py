@@ -89,9 +89,8 @@ class Registration:
         bound = listening_host()
         if names is not None and names.allocates and not port:
             self._refuse_taken(names)
-            contact = names.register(self.name, port_type=self.type or None)
+            contact = self._register(names)
             self.name = contact.name
-            self._has_name = True
             try:
                 self.port = listen(contact.port)
             except OSError:
@@ -99,24 +98,38 @@ class Registration:
                 # that has taken the name at the same moment.
                 self._refuse_rival(contact)
                 self.port = self._listen(listen, 0)
-                contact = names.register(
-                    self.name, "tcp", contact.host, self.port, self.type or None
-                )
+                contact = self._register(names, "tcp", contact.host, self.port)
             if bound and contact.host != bound:  # where the name server sees us nobody listens
-                contact = names.register(self.name, "tcp", bound, self.port, self.type or None)
+                contact = self._register(names, "tcp", bound, self.port)
         else:
             if names is not None:
                 self._refuse_taken(names)
             self.port = self._listen(listen, port)
             where = host or bound or ("127.0.0.1" if names is not None else outward_address())
             if names is not None:
-                contact = names.register(self.name, "tcp", where, self.port, self.type or None)
+                contact = self._register(names, "tcp", where, self.port)
             else:
                 self.name = self.name or f"/{where}_{self.port}"
                 contact = Contact("tcp", self.name, where, self.port)
         self.contact = contact
         self.name = contact.name
-        self._has_name = names is not None
+
+    def _register(
+        self,
+        names: NameClient,
+        carrier: str | None = None,
+        host: str | None = None,
+        port: int | None = None,
+    ) -> Contact:
+        """Register. A signal may cut this when the service has the name already and we do not know
+        that yet; `forget` then takes it out."""
+        had = self._has_name
+        self._has_name = True
+        try:
+            return names.register(self.name, carrier, host, port, self.type or None)
+        except YarpError:
+            self._has_name = had
+            raise
 
     def _listen(self, listen: Callable[[int], int], port: int) -> int:
         try:
@@ -241,7 +254,8 @@ class Registration:
     def forget(self) -> None:
         """Opening failed: leave no name behind. It may have failed because its time was over, so
         this has some of its own."""
-        if self._has_name and self.names is not None:
+        # A name that the service chooses, and that never reached us, is one that nobody looks for.
+        if self._has_name and self.names is not None and self.name.startswith("/"):
             try:
                 with outside(), Scope(moment(FORGETTING)):
                     if not self.port or self._is_ours(self.names):
