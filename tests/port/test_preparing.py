@@ -16,8 +16,9 @@ from support.wait import HANG, wait_until
 
 import yarpy
 from yarpy.port import preparing
-from yarpy.transports.shared.arena import arena_of, available
+from yarpy.transports.shared.arena import arena_of
 from yarpy.transports.shared.lease import HEADROOM, lease_type
+from yarpy.transports.shared.sealed import available
 
 ECHO = """
 import yarpy

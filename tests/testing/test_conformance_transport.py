@@ -13,7 +13,7 @@ from support.system import NO_UNIX_SOCKETS
 
 from yarpy import registry
 from yarpy.testing import TransportConformance
-from yarpy.transports.shared import arena, sysv
+from yarpy.transports.shared import sealed, sysv
 from yarpy.transports.tcp import TcpTransport
 
 
@@ -26,7 +26,7 @@ class TestInproc(TransportConformance):
     opener = registry.transports.load("inproc")
 
 
-@pytest.mark.skipif(not arena.available(), reason="this system shares no sealed memory")
+@pytest.mark.skipif(not sealed.available(), reason="this system shares no sealed memory")
 class TestMemory(TransportConformance):
     opener = registry.transports.load("memory")
 

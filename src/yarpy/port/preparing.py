@@ -11,8 +11,9 @@ from operator import index
 from typing import TYPE_CHECKING, Any
 
 from yarpy.errors import LocalProtocolError
-from yarpy.transports.shared.arena import Arena, arena_of, available
+from yarpy.transports.shared.arena import Arena, arena_of
 from yarpy.transports.shared.lease import HEADROOM, lease_type
+from yarpy.transports.shared.sealed import available
 from yarpy.wire.stream import LARGE
 
 if TYPE_CHECKING:

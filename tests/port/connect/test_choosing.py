@@ -20,7 +20,8 @@ from yarpy.errors import NoNameServer
 from yarpy.port.connect import choosing
 from yarpy.port.connect.choosing import choose, instead
 from yarpy.route import parse_carrier
-from yarpy.transports.shared.arena import arena_of, available
+from yarpy.transports.shared.arena import arena_of
+from yarpy.transports.shared.sealed import available
 
 pytestmark = pytest.mark.skipif(not available(), reason="this system has no such memory")
 

@@ -16,19 +16,13 @@ import pytest
 from yarpy.errors import LocalProtocolError
 from yarpy.transports.descriptor import owned
 from yarpy.transports.shared import arena as module
-from yarpy.transports.shared.arena import (
-    LEDGER,
-    PAGE,
-    Arena,
-    Borrower,
-    Placed,
-    arena_of,
-    sealed_memory,
-)
+from yarpy.transports.shared.arena import PAGE, Arena, arena_of
 from yarpy.transports.shared.lease import HEADROOM
+from yarpy.transports.shared.loan import LEDGER, Borrower, Placed
+from yarpy.transports.shared.sealed import F_ADD_SEALS, available, sealed_memory
 
 fcntl: Any = pytest.importorskip("fcntl", reason="only Unix seals memory")
-pytestmark = pytest.mark.skipif(not module.available(), reason="this system has no such memory")
+pytestmark = pytest.mark.skipif(not available(), reason="this system has no such memory")
 
 
 def sealed(name: str, size: int) -> int:
@@ -114,7 +108,7 @@ def test_nobody_can_shorten_or_write_it() -> None:
     with pytest.raises(OSError):
         os.write(arena.number, b"x")
     with pytest.raises(OSError):
-        fcntl.fcntl(arena.number, module.F_ADD_SEALS, 0x8000)
+        fcntl.fcntl(arena.number, F_ADD_SEALS, 0x8000)
     with pytest.raises(OSError):
         mmap.mmap(arena.number, PAGE)  # for writing
 

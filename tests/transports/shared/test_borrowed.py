@@ -13,8 +13,10 @@ import pytest
 
 from yarpy.errors import RemoteProtocolError
 from yarpy.transports.descriptor import owned
-from yarpy.transports.shared.arena import LEDGER, PAGE, Arena, available, sealed_memory
+from yarpy.transports.shared.arena import PAGE, Arena
 from yarpy.transports.shared.borrowed import OTHERS, Borrowed, Shown
+from yarpy.transports.shared.loan import LEDGER
+from yarpy.transports.shared.sealed import available, sealed_memory
 
 pytestmark = pytest.mark.skipif(not available(), reason="this system has no such memory")
 

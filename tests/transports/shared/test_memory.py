@@ -16,9 +16,11 @@ from support.wait import HANG
 
 from yarpy.errors import LocalProtocolError, RemoteProtocolError
 from yarpy.transports.shared import memory
-from yarpy.transports.shared.arena import LEDGER, PAGE, arena_of, available, sealed_memory, tidy
+from yarpy.transports.shared.arena import PAGE, Arena, arena_of, tidy
 from yarpy.transports.shared.borrowed import OTHERS
+from yarpy.transports.shared.loan import LEDGER
 from yarpy.transports.shared.memory import MemoryTransport, SendingTransport, open_memory
+from yarpy.transports.shared.sealed import available, sealed_memory
 
 pytestmark = pytest.mark.skipif(not available(), reason="this system has no such memory")
 
@@ -77,6 +79,7 @@ def test_views_outlive_both_ends() -> None:
     sending.lend(placed)
     view = reading.take(0, placed.slot, placed.generation, placed.offset, placed.size)
     arena = placed.arena
+    assert isinstance(arena, Arena)
     del placed
     reading.close()
     sending.close()

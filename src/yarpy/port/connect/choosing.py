@@ -19,7 +19,7 @@ from yarpy.errors import YarpError
 from yarpy.names.address import is_local
 from yarpy.names.base import NameClient
 from yarpy.route import CarrierSpec, parse_carrier
-from yarpy.transports.shared.arena import available
+from yarpy.transports.shared.sealed import available
 from yarpy.transports.tls_setting import required
 
 MEMORY: Final = "memory"

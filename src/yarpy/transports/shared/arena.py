@@ -29,44 +29,19 @@ from yarpy import fork
 from yarpy.data.python.loaded import loaded
 from yarpy.errors import LocalProtocolError
 from yarpy.log import logger
-from yarpy.transports.descriptor import Descriptor, opened
 from yarpy.transports.shared.cgroup import free_memory
 from yarpy.transports.shared.lease import HEADROOM, Source, address_of, lease_type, place_of
+from yarpy.transports.shared.loan import SLOTS, Borrower, Loan, Placed
+from yarpy.transports.shared.sealed import forbid_writing, sealed_memory
 from yarpy.wire.stream import Buffer
 
 log = logger("yarpy.transports")
 
 SIZE: Final = 1 << 28
-SLOTS: Final = 256
-LEDGER: Final = 4 * SLOTS  # bytes
 PAGE: Final = mmap.PAGESIZE
 CALM: Final = 10.0  # seconds with room until the log says that there is room again
 _LARGE: Final = 1 << 18  # bytes; numpy copies them while other threads run
 _LAST: Final = 0xFFFFFFFF  # of the generations
-
-# fcntl, which not every system has, has names for these.
-F_ADD_SEALS: Final = 1033
-F_GET_SEALS: Final = 1034
-F_SEAL_SHRINK: Final = 2
-F_SEAL_GROW: Final = 4
-_F_SEAL_FUTURE_WRITE: Final = 16  # since Linux 5.1: only who has mapped it already writes
-
-
-def available() -> bool:
-    """Return whether this system can share such memory: Linux can."""
-    return hasattr(os, "memfd_create")
-
-
-def sealed_memory(name: str, size: int) -> Descriptor:
-    """A file in memory that keeps its size. Raises OSError."""
-    if sys.platform != "linux":
-        raise NotImplementedError
-    import fcntl
-
-    file = opened(os.memfd_create, name, os.MFD_CLOEXEC | os.MFD_ALLOW_SEALING)
-    os.ftruncate(file.fileno(), size)
-    fcntl.fcntl(file, F_ADD_SEALS, F_SEAL_SHRINK | F_SEAL_GROW)
-    return file
 
 
 @dataclass(slots=True, eq=False)
@@ -118,72 +93,6 @@ class Extent:
         self._mapped.freed = True
 
 
-class _Loan:
-    """A payload that readers are told of. kept: its writer may tell others. holder: what keeps it
-    where it lies, in our memory or (foreign) elsewhere."""
-
-    __slots__ = ("foreign", "generation", "holder", "kept", "readers", "slot")
-
-    def __init__(self, slot: int, generation: int, foreign: bool, holder: object) -> None:
-        self.slot = slot
-        self.generation = generation
-        self.foreign = foreign
-        self.holder = holder
-        self.kept = True
-        self.readers: list[Borrower] = []
-
-
-class Placed:
-    """A payload that can be lent, for as long as this object lives. `source` is where it lies."""
-
-    __slots__ = ("arena", "generation", "loan", "offset", "size", "slot", "source")
-
-    def __init__(self, arena: Arena, loan: _Loan, source: Source, offset: int, size: int) -> None:
-        self.arena = arena
-        self.loan = loan
-        self.slot = loan.slot
-        self.generation = loan.generation
-        self.source = source
-        self.offset = offset
-        self.size = size
-
-    def __del__(self) -> None:
-        self.loan.kept = False
-
-
-class Borrower:
-    """The payloads that the reader of one connection has given back. Of the two descriptors the
-    pipe becomes ours. Raises OSError."""
-
-    def __init__(self, ledger: int, pipe: Descriptor) -> None:
-        self._pipe = pipe
-        self._memory = mmap.mmap(ledger, LEDGER)
-        self._given_back = memoryview(self._memory).cast("I")
-        self.ended = False  # the connection has
-
-    def has(self, loan: _Loan) -> bool:
-        """Return whether the reader may still look at that payload."""
-        if self._given_back[loan.slot] == loan.generation:
-            return False
-        return not self.ended or self._lives()
-
-    def _lives(self) -> bool:
-        """Return whether the other end of the pipe is open."""
-        try:
-            if os.read(self._pipe.fileno(), 1):
-                return True  # it should not say anything
-        except BlockingIOError:
-            return True
-        except (OSError, ValueError):
-            pass  # ValueError: it was closed already
-        self.close()
-        return False
-
-    def close(self) -> None:
-        """Give the descriptor back."""
-        self._pipe.close()
-
-
 class Arena:
     """Memory of the port called `name`. Raises LocalProtocolError where there is none to be had."""
 
@@ -198,14 +107,14 @@ class Arena:
             ) from error
         try:
             self._memory = mmap.mmap(self.number, size)
-            _forbid_writing(self.number)
+            forbid_writing(self.number)
         except (OSError, ValueError) as error:
             raise LocalProtocolError(f"no memory to share ({error}); use tcp") from error
         self._mapped = _Mapped(self._memory)
         self.view = self._mapped.view
         self._lock = self._mapped.lock  # of what is below
         self._spans: list[_Span] = []  # that are in use, the lowest first
-        self._loans: list[_Loan] = []
+        self._loans: list[Loan] = []
         self._relayed = 0  # of these lie in other memory
         self._slots = [*range(SLOTS - 1, -1, -1)]  # that are free
         self._generation = 0
@@ -292,14 +201,14 @@ class Arena:
             with self._lock:
                 self._give_back()
 
-    def _lend(self, source: Source, holder: object) -> _Loan | None:
+    def _lend(self, source: Source, holder: object) -> Loan | None:
         """A slot for a payload, None if all are taken."""
         if not self._slots:
             self._give_back()
             if not self._slots:
                 return None
         self._generation = self._generation % _LAST + 1
-        loan = _Loan(self._slots.pop(), self._generation, source is not self, holder)
+        loan = Loan(self._slots.pop(), self._generation, source is not self, holder)
         self._loans.append(loan)
         if loan.foreign:
             self._relayed += 1
@@ -385,18 +294,6 @@ class Arena:
             log.warning(
                 "%s: its readers have given memory back, large messages fit again", self.name
             )
-
-
-def _forbid_writing(number: int) -> None:
-    """From now on nobody else can map it for writing, where the system can do that."""
-    if sys.platform != "linux":
-        raise NotImplementedError
-    import fcntl
-
-    try:
-        fcntl.fcntl(number, F_ADD_SEALS, _F_SEAL_FUTURE_WRITE)
-    except OSError:
-        pass  # an older Linux: readers are programs of the same user
 
 
 def _copy(room: memoryview, block: Buffer) -> None:

@@ -19,8 +19,9 @@ from typing import Final
 
 from yarpy.errors import RemoteProtocolError
 from yarpy.transports.descriptor import Descriptor, owned
-from yarpy.transports.shared.arena import F_GET_SEALS, F_SEAL_SHRINK, LEDGER, SLOTS, sealed_memory
 from yarpy.transports.shared.lease import LENDERS, address_of, lease_type
+from yarpy.transports.shared.loan import LEDGER, SLOTS
+from yarpy.transports.shared.sealed import F_GET_SEALS, F_SEAL_SHRINK, sealed_memory
 
 LARGEST: Final = 1 << 32  # bytes of a file that we map
 OTHERS: Final = 8  # files of other programs that one sender shows us at a time
