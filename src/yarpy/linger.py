@@ -9,7 +9,7 @@ for an event loop that runs there, and taken back when the last one closes there
 open, in a thread of its own, since the frame beneath may hold any lock; then the signal ends the
 process as it would have without us. The main thread hears of a signal; code outside Python that
 does not return keeps it waiting. On Windows the end of the console, and Ctrl-Break, are told by it
-instead.
+instead: see `platform/console.py`.
 """
 
 from __future__ import annotations
@@ -34,6 +34,8 @@ SETTING: Final = "YARPY_LINGER"
 LINGER: Final = 1.0  # seconds
 NAMES: Final = 0.5  # seconds beyond that, for what `left_for_names`
 MORE: Final = 0.5  # seconds beyond both for the thread that closes after a signal
+OWN: Final = 2.5  # seconds for a handler of the program's own where a console ends: of the five
+LOOK: Final = 0.02  # seconds until it is looked whether it has closed all
 
 Close = Callable[[float], object]  # gets the seconds that it may take
 
@@ -181,10 +183,18 @@ def hear_no_more() -> None:
             signal.signal(number, signal.SIG_DFL)
 
 
-def _end_by_console() -> None:
-    """Close what is open, unless the program has a handler of its own for that."""
-    if signal.getsignal(getattr(signal, "SIGBREAK", signal.SIGTERM)) is signal.SIG_DFL:
-        _end_all()
+def _end_by_console(surely: bool) -> None:
+    """Close what is open. A handler of the program's own does that by itself, but for what it has
+    not done where the process ends `surely`."""
+    number = getattr(signal, "SIGBREAK", signal.SIGTERM)
+    if signal.getsignal(number) is not signal.SIG_DFL:
+        if not surely:
+            return
+        signal.raise_signal(number)  # the system would, and end the process at once
+        until = time.monotonic() + OWN
+        while (_open or _last) and time.monotonic() < until:
+            time.sleep(LOOK)
+    _end_all()
 
 
 def _end_by(number: int, frame: FrameType | None) -> None:

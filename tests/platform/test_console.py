@@ -14,15 +14,19 @@ import yarpy
 from yarpy.platform.console import is_unread
 
 # What the system does: a thread of its own calls what was registered, and ends the process. (Under
-# wine nobody can send Ctrl-Break to a program without a terminal.)
+# wine nobody can send Ctrl-Break to a program without a terminal, and no window of it ends.)
 PORT = """
 import os, signal, sys, threading, time, yarpy
 from yarpy.platform import console
 
 def ends():
     sys.stdin.readline()
-    console._told[0](1)
+    console._told[0]({event})
     os._exit(5)
+
+def ended(*_):
+    print("my own", flush=True)
+    port.close()
 
 threading.Thread(target=ends, daemon=True).start()
 port = yarpy.Port("/asked/to/end")
@@ -30,34 +34,40 @@ port = yarpy.Port("/asked/to/end")
 print("open", flush=True)
 {then}
 """
-WAYS = {
-    "it sleeps": ("", "time.sleep(600)"),
-    "it reads": (
-        "",
-        "try: port.read()\nexcept yarpy.PortClosed: time.sleep(600)",
-    ),
-    "it has a handler of its own": ("signal.signal(signal.SIGBREAK, print)", "time.sleep(600)"),
+BREAK, WINDOW = 1, 2  # CTRL_BREAK_EVENT; CTRL_CLOSE_EVENT, behind which the process ends
+OWN = "signal.signal(signal.SIGBREAK, {})"
+READS = "try: port.read()\nexcept yarpy.PortClosed: time.sleep(600)"
+SLEEPS = "time.sleep(600)"
+WAYS = {  # what it does before and then, the event, what it says, whether the name is given back
+    "it sleeps": ("", SLEEPS, BREAK, [], True),
+    "it reads": ("", READS, BREAK, [], True),
+    "a window ends": ("", SLEEPS, WINDOW, [], True),
+    "it has a handler of its own": (OWN.format("print"), SLEEPS, BREAK, [], False),
+    "a window ends its own handler": (OWN.format("ended"), READS, WINDOW, ["my own"], True),
+    "its own handler does nothing": (OWN.format("print"), SLEEPS, WINDOW, [], True),
 }
 
 
 @pytest.mark.skipif(sys.platform != "win32", reason="only Windows asks a program by its console")
 @pytest.mark.parametrize("way", WAYS)
 def test_a_program_of_ports_gives_its_name_back(way: str) -> None:
-    before, then = WAYS[way]
+    before, then, event, said, given_back = WAYS[way]
     with yarpy.NameServer() as server:
         with subprocess.Popen(
-            [sys.executable, "-c", PORT.format(before=before, then=then)],
+            [sys.executable, "-c", PORT.format(before=before, then=then, event=event)],
             stdin=subprocess.PIPE,
             stdout=subprocess.PIPE,
+            text=True,
             env={**os.environ, **server.environment},
         ) as program:
             assert program.stdin is not None and program.stdout is not None
-            assert program.stdout.readline().strip() == b"open"
+            assert program.stdout.readline() == "open\n"
             assert yarpy.query("/asked/to/end") is not None
-            program.stdin.write(b"\n")
+            program.stdin.write("\n")
             program.stdin.flush()
             assert program.wait(HANG) == 5
-        assert (yarpy.query("/asked/to/end") is None) == (way != "it has a handler of its own")
+            assert program.stdout.read().splitlines() == said
+        assert (yarpy.query("/asked/to/end") is None) == given_back
 
 
 def test_a_pipe_that_nobody_reads() -> None:

@@ -3,7 +3,8 @@ of whoever reads what it prints; and what the console makes of escape sequences.
 
     Windows         Ctrl-Break, which services and supervisors send, the end of the window, of the
                     session, of the computer: told in a thread of the system's, also while the main
-                    thread sleeps, where no signal handler of Python would run
+                    thread sleeps, where no signal handler of Python would run. Behind all but
+                    Ctrl-Break the process ends, also one with a handler of its own for SIGBREAK
     Linux, macOS    nothing: that is a signal, SIGTERM or SIGHUP
 
 A write to a pipe that nobody reads is EPIPE; the C library of Windows calls it an invalid argument.
@@ -24,6 +25,7 @@ _told: Final[list[Any]] = []  # what the system calls, which must not be collect
 
 if sys.platform == "win32":
     _CTRL_C: Final = 0
+    _CTRL_BREAK: Final = 1
     _ESCAPES: Final = 0x0004  # ENABLE_VIRTUAL_TERMINAL_PROCESSING
 
     def is_unread(error: OSError) -> bool:
@@ -40,13 +42,14 @@ if sys.platform == "win32":
         if kernel.GetConsoleMode(handle, ctypes.byref(mode)):
             kernel.SetConsoleMode(handle, mode.value | _ESCAPES)
 
-    def at_end(act: Callable[[], object]) -> None:
-        """Call `act` once the console ends or wants the process to; then it ends."""
+    def at_end(act: Callable[[bool], object]) -> None:
+        """Call `act` once the console ends or wants the process to, with whether the process ends
+        then whatever it is told."""
         import ctypes
 
         def tell(event: int) -> int:
             if event != _CTRL_C:  # a KeyboardInterrupt, which ends the program as it likes
-                act()
+                act(event != _CTRL_BREAK)
             return 0  # the next one may do something, too; the last of them ends the process
 
         told = ctypes.WINFUNCTYPE(ctypes.c_int, ctypes.c_uint)(tell)
@@ -62,5 +65,5 @@ else:
     def obey_escapes(stream: TextIO) -> None:
         """Do nothing: terminals do."""
 
-    def at_end(act: Callable[[], object]) -> None:
+    def at_end(act: Callable[[bool], object]) -> None:
         """Do nothing: here a signal tells that."""

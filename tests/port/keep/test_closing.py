@@ -85,7 +85,7 @@ def test_after_ctrl_c_the_rest_is_done_in_a_hurry_and_the_cut_step_again():
     with pytest.raises(KeyboardInterrupt):
         end.run(60.0)
     assert done == ["cut", "rest"]
-    assert left[0] <= HURRY
+    assert left[0] < 1.001 * HURRY  # what is added to a time and taken away is rounded
     assert not end.done
     end.run(60.0)
     assert done == ["cut", "rest", "cut"]
@@ -149,4 +149,4 @@ def test_but_none_after_ctrl_c():
 
     with pytest.raises(KeyboardInterrupt):
         closing((cut, 1.0), (lambda: left.append(scope.left()), 1.0)).run(60.0, last=60.0)
-    assert left[0] <= HURRY
+    assert left[0] < 1.001 * HURRY  # what is added to a time and taken away is rounded
