@@ -18,7 +18,7 @@ from yarpy.data.bottle import Bottle
 from yarpy.data.json import from_json
 from yarpy.data.sig import jpeg
 from yarpy.data.sig.image import Image
-from yarpy.data.text import parse_text
+from yarpy.data.text_reader import parse_text
 from yarpy.errors import DecodeError
 from yarpy.limit import Limits, limits, number_in
 

@@ -10,7 +10,8 @@ from support.message import bottles, kinds, scalars, texts
 from yarpy.data.bottle import Bottle, Property
 from yarpy.data.sig.vector import Vector
 from yarpy.data.stamp import Stamp
-from yarpy.data.text import parse_text, text_of
+from yarpy.data.text import text_of
+from yarpy.data.text_reader import parse_text
 from yarpy.data.value import Float32, Int8, Int16, Int64, Vocab
 from yarpy.data.writer import dict_elements, list_blocks, value_blocks
 

@@ -25,7 +25,7 @@ from yarpy.data import xmlrpc
 from yarpy.data.bottle import Property
 from yarpy.data.json import from_json
 from yarpy.data.stamp import Stamp
-from yarpy.data.text import Balance, parse_text
+from yarpy.data.text_reader import Balance, parse_text
 from yarpy.errors import (
     AddressError,
     DecodeError,

@@ -21,7 +21,8 @@ from collections.abc import Callable, Iterable, Iterator, Mapping
 from pathlib import Path
 
 from yarpy.data.bottle import Bottle, Property
-from yarpy.data.text import Balance, plain_text
+from yarpy.data.text import plain_text
+from yarpy.data.text_reader import Balance
 from yarpy.errors import DecodeError
 from yarpy.limit import INI_DEPTH, INI_FILE
 

@@ -18,7 +18,8 @@ from typing import TYPE_CHECKING, Any, Self
 from yarpy.data.array_export import ArrayExport
 from yarpy.data.numbers import Packed
 from yarpy.data.reader import read_list
-from yarpy.data.text import Groups, parse_text, plain_text, print_text, text_of
+from yarpy.data.text import Groups, plain_text, print_text, text_of
+from yarpy.data.text_reader import parse_text
 from yarpy.data.value import Buffer
 from yarpy.data.writer import dict_elements, list_blocks
 

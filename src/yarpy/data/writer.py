@@ -16,7 +16,8 @@ from typing import Any, Final, TypeAlias
 from yarpy.data.embedded import message_of, plain
 from yarpy.data.numbers import Packed
 from yarpy.data.reader import read_list
-from yarpy.data.text import parse_text, sorted_groups, text_of
+from yarpy.data.text import sorted_groups, text_of
+from yarpy.data.text_reader import parse_text
 from yarpy.data.value import (
     BIG,
     BLOB,

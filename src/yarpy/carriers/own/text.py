@@ -10,7 +10,7 @@ from __future__ import annotations
 
 from yarpy.carriers.base import ASKS_FOR_KEY, OVER_TCP, Carrier, Limits, introduce
 from yarpy.data import codec
-from yarpy.data.text import Balance
+from yarpy.data.text_reader import Balance
 from yarpy.errors import RemoteProtocolError
 from yarpy.limit import TEXT_LINE
 from yarpy.wire import framing

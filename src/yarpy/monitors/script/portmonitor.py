@@ -27,7 +27,7 @@ from typing import Any, Final
 
 from yarpy import scope
 from yarpy.data.bottle import Bottle, Property
-from yarpy.data.text import parse_text
+from yarpy.data.text_reader import parse_text
 from yarpy.errors import LocalProtocolError, YarpError
 from yarpy.log import logger
 from yarpy.monitors import chain
