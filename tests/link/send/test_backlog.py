@@ -6,6 +6,7 @@ import threading
 import time
 
 import pytest
+from support.build import changes_a_constant
 from support.lasted import lasted
 from support.outbound import connected, read_messages, total
 from support.wait import HANG, wait_until
@@ -41,6 +42,7 @@ def test_who_is_quick_gets_everything_in_the_writers_thread() -> None:
         assert len(set(read_messages(far, 50, ack=False))) == 50
 
 
+@changes_a_constant
 def test_it_leaves_at_once_though_another_thread_is_at_the_connection_for_a_moment(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
