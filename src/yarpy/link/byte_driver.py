@@ -78,8 +78,6 @@ class ByteDriver(Driver):
             return True
         if self._send is None:
             return False
-        if self._beside is not None and self._beside.aside:
-            return False  # what lies aside is counted by `send`
         if len(output) > 1:
             if len(output) > FEW or sum(map(len, output)) > LITTLE:
                 return False
@@ -100,6 +98,8 @@ class ByteDriver(Driver):
             self.bytes_out += size
             del output[0]
             self._taken = 0
+            if self._beside is not None:
+                self._pass_by()
         else:
             self._account()
         return not self.stream.output
@@ -112,6 +112,14 @@ class ByteDriver(Driver):
         output[:1] = rest
         self.bytes_out += sent
         self._taken = 0
+
+    def _pass_by(self) -> None:
+        """Count what lies aside: the words that tell of it have left, or leave."""
+        beside = self._beside
+        assert beside is not None
+        self.bytes_out += beside.aside
+        self.aside += beside.aside
+        beside.aside = 0
 
     def send(self, until: float | None = None) -> bool:
         stream = self.stream
@@ -133,9 +141,7 @@ class ByteDriver(Driver):
         for piece in left:
             self.bytes_out -= len(piece)
         if self._beside is not None:
-            self.bytes_out += self._beside.aside
-            self.aside += self._beside.aside
-            self._beside.aside = 0
+            self._pass_by()
         if left:
             stream.put_back(left)
             return False

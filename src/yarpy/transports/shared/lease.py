@@ -170,9 +170,9 @@ def address_of(memory: mmap.mmap) -> int:
 
 
 def _address(block: memoryview) -> int:
-    numpy = imported("numpy")
     whole: Any = block.obj
-    if not (isinstance(whole, numpy.ndarray) and whole.nbytes == len(block)):
+    if not (isinstance(whole, lease_type().__base__) and whole.nbytes == len(block)):
+        numpy = imported("numpy")
         whole = numpy.frombuffer(block, numpy.uint8)
     address: int = whole.__array_interface__["data"][0]
     return address
