@@ -1,8 +1,14 @@
 """Topics of ROS 2: a port against eclipse-zenoh alone, with the same bytes over the same router.
 
-Round trips between two programs, by turns: `bare` puts CDR and an attachment with eclipse-zenoh and
-hears by a callback; `port` writes a value to a port and reads an object of the type from another.
-Then a flood of small messages to a program that counts them.
+Round trips between two programs, which do it in each way by turns, so that a busy machine is as
+unkind to each; a ratio compares medians of the same turn, and the middle one of these counts. Both
+ways without a port put finished CDR and an attachment, and copy out the bytes that come: `direct`
+hears inside Zenoh's own thread (`indirect=False`), where nothing may wait; `bare` hears as
+eclipse-zenoh does by default, who asks by `recv`, who answers by a function. `port` writes a value
+to a port and reads an object of the type from another. Then a flood of small messages to a program
+that counts them.
+
+    python bench/ros2_topic.py [text | picture | flood] ...
 """
 
 from __future__ import annotations
@@ -16,6 +22,7 @@ import sys
 import threading
 import time
 from collections.abc import Callable, Iterator
+from functools import partial
 from typing import Any
 
 import numpy as np
@@ -28,7 +35,8 @@ from yarpy.peers.ros2.zenoh.attachment import attachment
 from yarpy.peers.zenoh.router import open_router
 from yarpy.peers.zenoh.transport import close, share
 
-TURNS = 5
+TURNS = 40
+ANSWER = "answer"  # the word that starts the other program
 FLOOD = 20_000
 TYPES = {"text": "std_msgs/msg/String", "picture": "sensor_msgs/msg/Image"}
 
@@ -53,28 +61,38 @@ def key(way: str, what: str) -> str:
 
 
 @contextlib.contextmanager
-def bare(what: str, answers: bool) -> Iterator[Callable[[], None]]:
+def alone(what: str, answers: bool, direct: bool) -> Iterator[Callable[[], None]]:
     """One side by eclipse-zenoh alone; what is returned makes a round trip."""
     from zenoh.handlers import Callback
 
     out, into = ("back", "there") if answers else ("there", "back")
+    way = "direct" if direct else "bare"
     come = threading.Semaphore(0)
     body, attached = body_of(what), attachment(1, 1, bytes(16))
     with share() as shared:
-        publisher = shared.session.declare_publisher(key(out, what))
+        publisher = shared.session.declare_publisher(key(f"{way}_{out}", what))
 
         def heard(sample: Any) -> None:
-            data = bytes(sample.payload)
+            data = sample.payload.to_bytes()
             if answers:
                 publisher.put(data, attachment=attached)
             else:
                 come.release()
 
-        hears = shared.session.declare_subscriber(key(into, what), Callback(heard, indirect=False))
+        where = key(f"{way}_{into}", what)
+        if direct:
+            hears = shared.session.declare_subscriber(where, Callback(heard, indirect=False))
+        elif answers:
+            hears = shared.session.declare_subscriber(where, heard)
+        else:
+            hears = shared.session.declare_subscriber(where)
 
         def turn() -> None:
             publisher.put(body, attachment=attached)
-            come.acquire()
+            if direct:
+                come.acquire()
+            else:
+                hears.recv().payload.to_bytes()
 
         yield turn
         hears.undeclare()
@@ -105,40 +123,50 @@ def port(what: str, answers: bool) -> Iterator[Callable[[], None]]:
             yield turn
 
 
-WAYS = {"bare": bare, "port": port}
+WAYS = {
+    "direct": partial(alone, direct=True),
+    "bare": partial(alone, direct=False),
+    "port": port,
+}
 
 
-def answer(way: str, what: str) -> None:
+def answer(what: str) -> None:
     """The other program."""
-    with WAYS[way](what, True):
+    with contextlib.ExitStack() as stack:
+        for made in WAYS.values():
+            stack.enter_context(made(what, True))
         print("ready", flush=True)
         sys.stdin.read()
 
 
 def measure(what: str, count: int) -> None:
     found: dict[str, list[float]] = {way: [] for way in WAYS}
-    for _ in range(TURNS):
-        for way, made in WAYS.items():
-            command = [sys.executable, __file__, way, what]
-            pipe = subprocess.PIPE
-            with subprocess.Popen(command, stdin=pipe, stdout=pipe, text=True) as other:
-                assert other.stdout is not None
-                other.stdout.readline()
-                with made(what, False) as turn:
-                    time.sleep(1.0)  # both ends find each other
-                    turn(), turn()
-                    times = []
-                    for _ in range(count):
-                        started = time.perf_counter()
-                        turn()
-                        times.append(time.perf_counter() - started)
-                other.stdin.close()  # type: ignore[union-attr]
-            found[way].append(statistics.median(times) * 1e6)
-    median = {way: statistics.median(times) for way, times in found.items()}
-    print(
-        f"{what:8} there and back: bare {median['bare']:8.0f} us   port {median['port']:8.0f} us   "
-        f"{median['port'] / median['bare']:.2f} times"
-    )
+    pipe = subprocess.PIPE
+    command = [sys.executable, __file__, ANSWER, what]
+    with (
+        subprocess.Popen(command, stdin=pipe, stdout=pipe, text=True) as other,
+        contextlib.ExitStack() as stack,
+    ):
+        assert other.stdout is not None and other.stdin is not None
+        stack.callback(other.stdin.close)
+        other.stdout.readline()
+        turns = {way: stack.enter_context(made(what, False)) for way, made in WAYS.items()}
+        time.sleep(1.0)  # both ends find each other
+        for _ in range(TURNS):
+            for way, turn in turns.items():
+                turn(), turn()
+                times = []
+                for _ in range(count):
+                    started = time.perf_counter()
+                    turn()
+                    times.append(time.perf_counter() - started)
+                found[way].append(statistics.median(times) * 1e6)
+    shown = "   ".join(f"{way} {statistics.median(times):.0f}" for way, times in found.items())
+    ratios = []
+    for way in ("direct", "bare"):
+        pairs = zip(found["port"], found[way], strict=True)
+        ratios.append(f"{statistics.median(ours / base for ours, base in pairs):.2f} x {way}")
+    print(f"{what:8} there and back, us: {shown}   port: {', '.join(ratios)}", flush=True)
 
 
 def flood() -> None:
@@ -151,7 +179,7 @@ def flood() -> None:
 
         def heard(sample: Any) -> None:
             nonlocal count
-            bytes(sample.payload)
+            sample.payload.to_bytes()
             count += 1
 
         hears = shared.session.declare_subscriber(
@@ -177,17 +205,20 @@ def flood() -> None:
 
 def main() -> None:
     DEFAULT.push(yarpy.LocalNames())
-    if len(sys.argv) > 2:
-        answer(sys.argv[1], sys.argv[2])
+    wanted = sys.argv[1:] or ["text", "picture", "flood"]
+    if wanted[0] == ANSWER:
+        answer(wanted[1])
         return
     with socket.socket() as free:
         free.bind(("127.0.0.1", 0))
         number = free.getsockname()[1]
     router = open_router([f"127.0.0.1:{number}"])
     os.environ["YARPY_ZENOH"] = f"127.0.0.1:{number}"
-    measure("text", 300)
-    measure("picture", 60)
-    flood()
+    for what in wanted:
+        if what == "flood":
+            flood()
+        else:
+            measure(what, 40 if what == "text" else 15)
     close(router)
 
 

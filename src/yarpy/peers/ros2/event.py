@@ -7,7 +7,8 @@
     message_lost          messages went by
 
 Rules: an endpoint counts its events; `hear`, if there is one, is called in a thread of the
-middleware. Over Zenoh nobody is kept out, and of all these only what is lost is known.
+middleware, or in the one that reads. Over Zenoh nobody is kept out, and of all these only what is
+lost is known.
 """
 
 from __future__ import annotations

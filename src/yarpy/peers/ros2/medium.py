@@ -19,8 +19,9 @@ from yarpy.peers.ros2.dds.service import DdsClient, DdsServer, begun
 from yarpy.peers.ros2.key import domain
 from yarpy.peers.ros2.name import check_node, check_topic, node_of
 from yarpy.peers.ros2.qos import WORDS, qos_of_words
-from yarpy.peers.ros2.zenoh.endpoint import Client, Endpoint, Publisher, Server, Subscriber
+from yarpy.peers.ros2.zenoh.endpoint import Client, Endpoint, Publisher, Server
 from yarpy.peers.ros2.zenoh.participant import take_part
+from yarpy.peers.ros2.zenoh.subscriber import Subscriber
 from yarpy.route import CarrierSpec, Route
 from yarpy.transports.inbox import Inbox
 from yarpy.transports.opener import Opener

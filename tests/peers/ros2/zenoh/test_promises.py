@@ -81,13 +81,15 @@ def test_subscribers_of_all_kinds_hear(
 
 
 def test_what_is_lost_is_an_event(names: yarpy.LocalNames) -> None:
+    import zenoh
+
     from yarpy.peers.ros2.zenoh.attachment import attachment
-    from yarpy.peers.ros2.zenoh.endpoint import MOST_PUBLISHERS
+    from yarpy.peers.ros2.zenoh.subscriber import MOST_PUBLISHERS
 
     events: list[ros2.Event] = []
 
     class Sample:
-        payload = b""
+        payload = zenoh.ZBytes(b"")
 
     with ros2.Node("/promises") as node:
         made: Any = node.subscriber("/lost", TYPE, print, on_event=events.append)

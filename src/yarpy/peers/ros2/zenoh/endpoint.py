@@ -1,6 +1,6 @@
-"""Endpoints: a port's publisher, subscriber, client or server in Zenoh, as a transport of objects.
+"""Endpoints: a port's publisher, client or server in Zenoh, as a transport of objects.
 
-    Publisher, Subscriber      messages; Client, Server      questions and answers
+    Publisher      messages; Client, Server      questions and answers; `subscriber.py` has the rest
 
 Rules: what carriers write comes here as `Outgoing`, what they read leaves as `Incoming`. Zenoh's
 threads put what comes into the inbox. An endpoint
@@ -19,11 +19,11 @@ from yarpy.errors import DecodeError, YarpError
 from yarpy.log import logger, readable
 from yarpy.peers.ros2 import kind as kinds
 from yarpy.peers.ros2.carrier import GONE, Incoming, Outgoing
-from yarpy.peers.ros2.event import MESSAGE, Event, Events
+from yarpy.peers.ros2.event import Events
 from yarpy.peers.ros2.key import NO_HASH, Key
 from yarpy.peers.ros2.mismatch import Mismatch
 from yarpy.peers.ros2.name import Node
-from yarpy.peers.ros2.qos import KEEP_ALL, PROFILES, Qos, promised
+from yarpy.peers.ros2.qos import KEEP_ALL, Qos, promised
 from yarpy.peers.ros2.token import CLIENT, PUBLISHER, SERVER, SUBSCRIBER, Token, gid
 from yarpy.peers.ros2.zenoh.attachment import attachment, parse_attachment
 from yarpy.peers.ros2.zenoh.coalesced import Coalesced
@@ -36,9 +36,6 @@ from yarpy.transports.inbox import Inbox
 log = logger("yarpy.ros2")
 
 MOST_QUESTIONS: Final = 100  # that wait for a server of ours
-MOST_PUBLISHERS: Final = 1000  # whose numbers are followed
-BACKENDS: Final = "backends:cpu:"  # what Lyrical wants to know of readers of bytes
-BESIDE: Final = "/_buf_cpu"  # ... and where it may send them then
 
 
 class Endpoint(Inbox):
@@ -234,91 +231,6 @@ class Publisher(Endpoint):
             self._spare.give_back(joined)
 
 
-class Subscriber(Endpoint):
-    """Takes messages from its key."""
-
-    role = SUBSCRIBER
-    peers = (PUBLISHER,)
-
-    def __init__(self, *arguments: Any) -> None:
-        super().__init__(*arguments)
-        self._numbers: dict[bytes, int] = {}  # the last of each publisher
-        self._repeats = False  # whether what was kept may come once more
-        self._refused = ""
-        self._kept = 0  # messages that wait to be read
-        self._past = Coalesced(self._catch_up, f"yarpy past of {self.name}")
-
-    def extra(self, kind: Any) -> str:
-        return BACKENDS if kinds.has_bytes(kind) and not self.qos.latched else ""
-
-    def join(self, key: Key, kind: Any) -> None:
-        from zenoh.handlers import Callback
-
-        hear = Callback(self._heard, indirect=False)
-        session = self.participant.session
-        self._kept = self.qos.kept
-        if self.qos.latched:
-            from zenoh import ext
-
-            recovery = ext.RecoveryConfig(periodic_queries=None, heartbeat=True)
-            history = ext.HistoryConfig(detect_late_publishers=True, max_samples=self.qos.kept)
-            self._handles.append(
-                ext.declare_advanced_subscriber(
-                    session,
-                    str(key),
-                    hear,
-                    history=history,
-                    recovery=recovery if self.qos.reliable else None,
-                    subscriber_detection=True,
-                )
-            )
-            return
-        self._handles.append(session.declare_subscriber(str(key), hear))
-        if self.extra(kind):
-            self._handles.append(session.declare_subscriber(f"{key}{BESIDE}", hear))
-
-    def joined(self, token: Token) -> None:
-        if token.qos.latched and not self.qos.latched and not self.given_qos:
-            self._past()
-
-    def _catch_up(self) -> None:
-        """Subscribe to what is kept, too: a publisher has come that keeps something."""
-        with self._opening:
-            if self._closed or self.key is None or self.qos.latched:
-                return
-            self.qos, self._repeats = promised([PROFILES["latched"]]), True
-            before, self._handles = self._handles, []
-            shown, self._declared = self._declared, None
-            self.open(self.kind, self._old)
-            for handle in before:
-                handle.undeclare()
-            if shown is not None:
-                shown.close()
-
-    def _heard(self, sample: Any) -> None:
-        attached = sample.attachment
-        number, when = 0, 0
-        if attached is not None:
-            try:
-                number, when, sender = parse_attachment(bytes(attached))
-            except DecodeError as error:
-                self.dropped += 1
-                if str(error) != self._refused:
-                    self._refused = str(error)
-                    log.warning("%s: a message of %s is lost: %s", self.port_name, self.name, error)
-                return
-            before = self._numbers.get(sender, number - 1)
-            if number <= before and self._repeats:
-                return
-            if number > before + 1:
-                self.dropped += number - before - 1
-                self.events.tell(Event(MESSAGE, number - before - 1))
-            if len(self._numbers) >= MOST_PUBLISHERS and sender not in self._numbers:
-                del self._numbers[next(iter(self._numbers))]  # one that flaps has many names
-            self._numbers[sender] = number
-        self.put(Incoming(bytes(sample.payload), number, when), self._kept)
-
-
 class Client(Endpoint):
     """Asks a service."""
 
@@ -371,7 +283,7 @@ def answer_of(reply: Any) -> Incoming:
             number, when, _ = parse_attachment(bytes(good.attachment))
         except DecodeError as error:
             return Incoming(b"", failure=str(error))
-    return Incoming(bytes(good.payload), number, when)
+    return Incoming(good.payload.to_bytes(), number, when)
 
 
 class Server(Endpoint):
@@ -401,7 +313,7 @@ class Server(Endpoint):
             self.dropped += 1
             query.reply_err(b"too many questions are waiting")
             return
-        body = b"" if payload is None else bytes(payload)
+        body = b"" if payload is None else payload.to_bytes()
         self.put(Incoming(body, number, when, (query, number, sender)), MOST_QUESTIONS)
 
     def give(self, item: Outgoing) -> None:

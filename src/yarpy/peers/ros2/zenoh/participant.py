@@ -72,6 +72,7 @@ class Participant:
     _hearing: Any = None
     _count: int = 0
     _nodes: dict[Node, _Node] = field(default_factory=dict)
+    _rings: set[str] = field(default_factory=set)  # keys
     _lock: threading.RLock = field(default_factory=threading.RLock)
 
     @property
@@ -114,6 +115,17 @@ class Participant:
                 return
             del self._nodes[node]
         ours.token.undeclare()
+
+    def claim(self, key: str) -> bool:
+        """Have the ring of a key, until `give_up`; False where another subscription has it."""
+        with self._lock:
+            free = key not in self._rings
+            self._rings.add(key)
+        return free
+
+    def give_up(self, key: str) -> None:
+        """The ring of a key is gone."""
+        self._rings.discard(key)
 
     def close(self) -> None:
         """One user less; the last one closes the session."""

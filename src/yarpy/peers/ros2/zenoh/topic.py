@@ -19,9 +19,10 @@ from yarpy.peers.ros2.exchange import Worker
 from yarpy.peers.ros2.key import Key
 from yarpy.peers.ros2.name import Node
 from yarpy.peers.ros2.qos import Qos
-from yarpy.peers.ros2.zenoh.endpoint import Publisher, Subscriber
+from yarpy.peers.ros2.zenoh.endpoint import Publisher
 from yarpy.peers.ros2.zenoh.participant import take_part
 from yarpy.peers.ros2.zenoh.service import begun
+from yarpy.peers.ros2.zenoh.subscriber import Subscriber
 from yarpy.wire.message import Packet
 
 log = logger("yarpy.ros2")
@@ -52,6 +53,8 @@ class Writer(Publisher):
 
 class Hearer(Subscriber):
     """Calls `callback` with each message, in the thread of a worker."""
+
+    waits = False
 
     def __init__(
         self,
