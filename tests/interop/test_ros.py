@@ -17,7 +17,7 @@ from support.wait import HANG, wait_until
 
 import yarpy
 from yarpy.link.send.slow_reader import STRANGERS
-from yarpy.peers.ros.node import Node
+from yarpy.peers.ros.node.node import Node
 
 
 @pytest.mark.peer("ros", "rosmaster")
@@ -53,7 +53,7 @@ def of_node(graph: RosGraph) -> dict[str, str]:
 
 NODE = """
 import sys, time, yarpy
-from yarpy.peers.ros.node import Node
+from yarpy.peers.ros.node.node import Node
 
 node = Node("/ending")
 chatter = node.publisher("/chatter", "std_msgs/String")
@@ -176,7 +176,7 @@ def test_a_topic_of_the_command_line_listens_where_it_says(
 
 AGAIN = """
 import sys, time, yarpy
-from yarpy.peers.ros.node import Node
+from yarpy.peers.ros.node.node import Node
 
 node = Node("/again")
 node.publisher("/map", "std_msgs/String", latch=True).write(sys.argv[1])

@@ -12,7 +12,7 @@ from support.wait import HANG, wait_until
 
 from yarpy.errors import RemoteProtocolError
 from yarpy.peers.ros.master import RosMaster
-from yarpy.peers.ros.node import Node
+from yarpy.peers.ros.node.node import Node
 
 CALLER = """
 import rospy

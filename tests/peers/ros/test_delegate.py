@@ -11,7 +11,7 @@ from support.wait import HANG, wait_until
 
 import yarpy
 from yarpy.peers.ros.delegate import CALLER
-from yarpy.peers.ros.node import Node
+from yarpy.peers.ros.node.node import Node
 
 
 @pytest.fixture(scope="module")

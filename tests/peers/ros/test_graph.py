@@ -16,7 +16,7 @@ from yarpy.errors import AddressError
 from yarpy.peers.ros.graph import GRAPH, SOON
 from yarpy.peers.ros.membership import Membership
 from yarpy.peers.ros.names import RosNames
-from yarpy.peers.ros.node import Node
+from yarpy.peers.ros.node.node import Node
 
 #: how often programs are killed; 10 where there is time
 ROUNDS = int(os.environ.get("YARPY_ROS_ROUNDS", "3"))

@@ -20,7 +20,7 @@ from yarpy.errors import AddressError
 from yarpy.names.node_name import NodeName
 from yarpy.peers.ros import membership
 from yarpy.peers.ros.membership import OF_HOST, PUBLISHERS, Membership
-from yarpy.peers.ros.node import Node
+from yarpy.peers.ros.node.node import Node
 
 
 @contextmanager

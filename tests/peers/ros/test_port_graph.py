@@ -11,8 +11,8 @@ from support.wait import HANG
 
 import yarpy
 from yarpy.names.node_name import NodeName
+from yarpy.peers.ros.node.slave import CALLS
 from yarpy.peers.ros.port_graph import ANSWERS, RosGraph
-from yarpy.peers.ros.slave import CALLS
 
 
 def test_the_calls_are_those_of_the_registry() -> None:

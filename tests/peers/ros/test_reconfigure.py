@@ -8,7 +8,7 @@ import pytest
 from support.ros_graph import RosGraph
 from support.wait import HANG, wait_until
 
-from yarpy.peers.ros.node import Node
+from yarpy.peers.ros.node.node import Node
 
 pytestmark = pytest.mark.peer("dynamic_reconfigure")
 

@@ -16,7 +16,7 @@ from yarpy.kits.sim.board import Board
 from yarpy.kits.sim.body import Body
 from yarpy.kits.sim.joint import Joint
 from yarpy.kits.sim.robot import Parts, Robot, icub_head
-from yarpy.peers.ros.node import Node
+from yarpy.peers.ros.node.node import Node
 from yarpy.peers.ros.robot import SERVICE, RosGuest, RosRobot
 
 WATCHER = """

@@ -17,7 +17,7 @@ from yarpy.peers.ros.bag.writer import BagWriter
 from yarpy.peers.ros.message.library import Library
 from yarpy.peers.ros.message.native import to_value
 from yarpy.peers.ros.message.source import Texts
-from yarpy.peers.ros.node import Node
+from yarpy.peers.ros.node.node import Node
 
 RECORD, PLAY = Path("/usr/lib/rosbag/record"), Path("/usr/lib/rosbag/play")
 RELAY, MUX = Path("/usr/lib/topic_tools/relay"), Path("/usr/lib/topic_tools/mux")

@@ -10,7 +10,7 @@ from support.ros_graph import RosGraph
 from support.wait import HANG, wait_until
 
 from yarpy.errors import Timeout
-from yarpy.peers.ros.node import Node
+from yarpy.peers.ros.node.node import Node
 
 
 @pytest.mark.parametrize(

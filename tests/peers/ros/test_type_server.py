@@ -10,7 +10,7 @@ import yarpy
 from yarpy.errors import UnknownType
 from yarpy.peers.ros.message.library import Library
 from yarpy.peers.ros.message.source import Folder, Standard
-from yarpy.peers.ros.node import Node
+from yarpy.peers.ros.node.node import Node
 from yarpy.peers.ros.type_server import TypeClient, TypeServer
 
 POSE = "float32 x\nfloat32 y\nfloat32 theta\nfloat32 v\nfloat32 w\n"

@@ -32,9 +32,9 @@ _WHERE = {
     "BagReader": "yarpy.peers.ros.bag.reader",
     "BagWriter": "yarpy.peers.ros.bag.writer",
     "Duration": "yarpy.peers.ros.message.message",
-    "Node": "yarpy.peers.ros.node",
-    "Publisher": "yarpy.peers.ros.node",
-    "Subscriber": "yarpy.peers.ros.node",
+    "Node": "yarpy.peers.ros.node.node",
+    "Publisher": "yarpy.peers.ros.node.topic",
+    "Subscriber": "yarpy.peers.ros.node.topic",
     "Time": "yarpy.peers.ros.message.message",
     "Transforms": "yarpy.peers.ros.transform.topic",
     "TypeServer": "yarpy.peers.ros.type_server",
@@ -47,9 +47,9 @@ if TYPE_CHECKING:
     from yarpy.peers.ros.bag.writer import BagWriter as BagWriter
     from yarpy.peers.ros.message.message import Duration as Duration
     from yarpy.peers.ros.message.message import Time as Time
-    from yarpy.peers.ros.node import Node as Node
-    from yarpy.peers.ros.node import Publisher as Publisher
-    from yarpy.peers.ros.node import Subscriber as Subscriber
+    from yarpy.peers.ros.node.node import Node as Node
+    from yarpy.peers.ros.node.topic import Publisher as Publisher
+    from yarpy.peers.ros.node.topic import Subscriber as Subscriber
     from yarpy.peers.ros.transform.topic import Transforms as Transforms
     from yarpy.peers.ros.type_server import TypeServer as TypeServer
 else:

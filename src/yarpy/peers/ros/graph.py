@@ -22,10 +22,10 @@ from yarpy.errors import AddressError, NoNameServer, YarpError
 from yarpy.log import logger
 from yarpy.names.base import NameClient
 from yarpy.names.node_name import CLIENT, PUBLISHER, SERVER
-from yarpy.peers.ros import slave
 from yarpy.peers.ros.master import RosMaster, advertised_host, uri_of
 from yarpy.peers.ros.membership import GRAPH_NAME, Membership, NodeAddress
-from yarpy.peers.ros.parameters import Followed
+from yarpy.peers.ros.node import slave
+from yarpy.peers.ros.node.parameters import Followed
 from yarpy.port.hub import Hub
 from yarpy.port.mailbox import Callback, Mailbox
 from yarpy.route import Declared

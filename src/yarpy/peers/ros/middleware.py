@@ -25,7 +25,7 @@ from yarpy.kits.wrap.shape import Scalar, Shape, Wired
 from yarpy.kits.wrap.tree import from_text, to_text
 from yarpy.peers.ros.message.library import default_library
 from yarpy.peers.ros.message.message import Message as RosMessage
-from yarpy.peers.ros.node import Node
+from yarpy.peers.ros.node.node import Node
 from yarpy.peers.ros.service.calls import ServiceFailed
 from yarpy.peers.ros.service.method import Service, Types, error_of, handled, topic_and_type
 from yarpy.port.port import MessagePort

@@ -29,7 +29,7 @@ from yarpy.kits.sim.robot import Robot
 from yarpy.names.address import is_local
 from yarpy.peers.ros.graph_name import ros_name
 from yarpy.peers.ros.master import VARIABLE, RosMaster, parse_uri, uri_of
-from yarpy.peers.ros.node import Node
+from yarpy.peers.ros.node.node import Node
 
 TRY: Final = """
 With ROS, whose master answers at {master}:

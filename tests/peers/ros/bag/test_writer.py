@@ -16,7 +16,7 @@ from yarpy.errors import AddressError, LocalProtocolError, UnknownType
 from yarpy.peers.ros.bag.reader import BagReader, Topic
 from yarpy.peers.ros.bag.writer import BagWriter
 from yarpy.peers.ros.message.message import Time
-from yarpy.peers.ros.node import Node
+from yarpy.peers.ros.node.node import Node
 
 THEIRS = """
 import sys, rosbag

@@ -17,7 +17,7 @@ from yarpy import idl
 from yarpy.errors import LinkClosed, NoNameServer, Timeout
 from yarpy.link.begin import handshake
 from yarpy.peers.ros.master import RosMaster
-from yarpy.peers.ros.node import Node
+from yarpy.peers.ros.node.node import Node
 from yarpy.peers.ros.service.calls import ENOUGH, LOOK, Calls
 
 TRIGGER: Any = idl.load("std_srvs/Trigger")

@@ -7,8 +7,8 @@ import pytest
 from support.ros_graph import RosGraph
 
 from yarpy.errors import AddressError
-from yarpy.peers.ros.arguments import Arguments, parse_arguments, parse_value
-from yarpy.peers.ros.node import Node
+from yarpy.peers.ros.node.arguments import Arguments, parse_arguments, parse_value
+from yarpy.peers.ros.node.node import Node
 
 
 def test_what_is_the_programs_own() -> None:

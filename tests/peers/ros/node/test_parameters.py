@@ -11,8 +11,8 @@ from support.wait import HANG, wait_until
 
 from yarpy.errors import NoNameServer, UnknownName
 from yarpy.peers.ros.master import RosMaster, call, parse_uri
-from yarpy.peers.ros.node import Node
-from yarpy.peers.ros.parameters import UNSET, Followed
+from yarpy.peers.ros.node.node import Node
+from yarpy.peers.ros.node.parameters import UNSET, Followed
 
 CACHING = """
 import rospy

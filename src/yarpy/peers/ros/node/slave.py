@@ -15,7 +15,7 @@ from yarpy.data.xmlrpc import Plain
 from yarpy.names.node_name import PUBLISHER, SUBSCRIBER
 from yarpy.peers.ros.graph_name import ros_name
 from yarpy.peers.ros.membership import Membership
-from yarpy.peers.ros.parameters import Followed
+from yarpy.peers.ros.node.parameters import Followed
 from yarpy.registry import graphs
 
 

@@ -7,8 +7,8 @@ import pytest
 from yarpy.names.node_name import NodeName
 from yarpy.peers.ros.master import RosMaster
 from yarpy.peers.ros.membership import Membership
-from yarpy.peers.ros.parameters import Followed
-from yarpy.peers.ros.slave import CALLS, answer
+from yarpy.peers.ros.node.parameters import Followed
+from yarpy.peers.ros.node.slave import CALLS, answer
 
 
 class Node:

@@ -12,8 +12,8 @@ from support.ros_graph import RosGraph
 from support.wait import HANG, wait_until
 
 from yarpy.errors import PortClosed
-from yarpy.peers.ros.node import Node
-from yarpy.peers.ros.rosout import LEVELS, TOPIC, TYPE, Rosout
+from yarpy.peers.ros.node.node import Node
+from yarpy.peers.ros.node.rosout import LEVELS, TOPIC, TYPE, Rosout
 
 CONSOLE = """
 import rospy

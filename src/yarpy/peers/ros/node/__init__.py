@@ -1,0 +1,1 @@
+"""Nodes of ROS 1 in a program of Python."""
