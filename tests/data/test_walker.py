@@ -1,6 +1,7 @@
 import struct
 import time
 
+import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
@@ -8,6 +9,7 @@ from support.message import bottles, walk
 from support.table import for_each
 from support.vectors import binaries, rows
 
+from yarpy.data.sig.pointcloud import KINDS, PointCloud
 from yarpy.data.walker import Walker
 from yarpy.errors import DecodeError
 
@@ -82,12 +84,59 @@ def test_limit_of_a_message_that_grows():
 
 @pytest.mark.parametrize(
     "message",
-    [packed(256, 1, 77), packed(999, 1), packed(256, -1), packed(256, 1, 4, -1), packed(258, 1)],
+    [
+        packed(256, 1, 77),
+        packed(999, 1, 7),
+        packed(256, -1),
+        packed(256, 1, 4, -1),
+        packed(258, 1, 0),
+    ],
     ids=lambda message: message.hex(),
 )
 def test_refuses_at_once(message):
     with pytest.raises(DecodeError):
         Walker().advance(message)
+
+
+def cloud(width, height, kind="xyz"):
+    fields = len(KINDS[kind].dtype.names)
+    numbers = np.arange(width * height * fields) % 100
+    return b"".join(PointCloud(numbers.reshape(height, width, fields), kind).to_wire())
+
+
+# Widths that no list has as its code, and those that one has: of numbers, and of anything.
+@pytest.mark.parametrize("width", [1, 2, 3, 4, 10, 255, 256, 257, 260, 266, 320, 384, 640])
+@pytest.mark.parametrize("height", [1, 2, 4])
+@pytest.mark.parametrize("kind", ["xy", "xyz", "xyz_i", "interest", "normal"])
+def test_clouds_of_points(width, height, kind):
+    message = cloud(width, height, kind)
+    assert walk(message + b"D" * 40, 21) == len(message)
+    walker = Walker()
+    assert walker.advance(message[:21]) == len(message) and not walker.done
+    assert walker.advance(message) == len(message) and walker.done
+
+
+@pytest.mark.parametrize("width", [2, 3, 77, 260, 640])
+def test_clouds_byte_by_byte(width):
+    message = cloud(width, 2)
+    walker = Walker()
+    for size in range(len(message)):
+        assert walker.advance(message[:size]) > size and not walker.done
+    assert walker.advance(message) == len(message) and walker.done
+
+
+def test_short_lists_do_not_wait_for_a_header_of_a_cloud():
+    for message in (packed(257, 1, 2), packed(256, 1, 1, 5), packed(256, 0), packed(257, 2, 2, 1)):
+        walker = Walker()
+        assert walker.advance(message) == len(message) and walker.done
+
+
+def test_the_limit_of_clouds():
+    with pytest.raises(DecodeError, match="limit"):
+        Walker(limit=1000).advance(cloud(100, 1)[:21])
+    huge = struct.pack("<iiibii", 1 << 15, 1 << 15, 2, 1, 266, 1 << 30)
+    with pytest.raises(DecodeError, match="limit"):
+        Walker().advance(huge)
 
 
 def test_is_not_quadratic():

@@ -2,8 +2,7 @@
 
 Rules: JSON keeps what it can: lists and dicts as they are, a vocab as `"[ok]"`, bytes as
 `{"type": "blob", "base64": "..."}`, numbers that JSON lacks as the strings "nan", "inf", "-inf",
-and sounds and arrays of Python as web pages get them. A point cloud is
-`{"type": "pointcloud", "kind": "xyz", "width": ..., "height": ..., "points": [[x, y, z], ...]}`.
+and sounds, clouds of points and arrays of Python as web pages get them.
 (The JSON of web pages, `yarpy.data.json`, is another: it makes objects of lists that look so.)
 One value per line, so that a stream of them can be read line by line.
 """
@@ -15,7 +14,6 @@ import sys
 from collections.abc import Iterable
 from typing import Any
 
-from yarpy.data.sig.pointcloud import PointCloud
 from yarpy.data.text import plain_text
 from yarpy.data.value import Vocab
 from yarpy.log import readable
@@ -37,10 +35,6 @@ def jsonable(value: Any) -> Any:
         return {"type": "blob", "base64": base64.b64encode(value).decode("ascii")}
     if isinstance(value, dict):
         return {plain_text(key): jsonable(item) for key, item in value.items()}
-    if isinstance(value, PointCloud):
-        what = {"type": "pointcloud", "kind": value.kind, "width": value.width}
-        points = jsonable(value.array.reshape(-1).tolist())
-        return {**what, "height": value.height, "points": points}
     if isinstance(value, complex):
         return [jsonable(value.real), jsonable(value.imag)]
     if not isinstance(value, list) and (hasattr(value, "to_wire") or hasattr(value, "dtype")):

@@ -35,14 +35,6 @@ def is_described(bottle: yarpy.Bottle) -> bool:
     return isinstance(last, list) and last[:1] == [KEY]
 
 
-def cloud_of(message: yarpy.Message) -> yarpy.PointCloud | None:
-    """Return the points of a message that is no Bottle; None if it is no point cloud either."""
-    try:
-        return message.as_(yarpy.PointCloud)
-    except yarpy.DecodeError:
-        return None
-
-
 def summary(value: Any) -> str:
     """Return what a picture, a sound, a cloud of points or an array is."""
     if isinstance(value, yarpy.Image):

@@ -12,7 +12,8 @@
     None                                        the null Value, an empty message
     dataclass, complex, and what else is in     with a description: `python.described`
     lists, tuples and dicts: arrays, None ...
-    Stamp, Vector, Matrix, Image, Sound ...     their own layout
+    Stamp, Vector, Matrix, Image, Sound ...     their own layout; as text, what is no Bottle is a
+                                                blob of it with its description
     arrays of numpy, torch, DLPack, buffers     see `yarpy.data.python.array`
     anything with `to_wire() -> blocks`         what that returns
 
@@ -37,6 +38,9 @@ from yarpy.data.python.array import blocks as array_blocks
 from yarpy.data.python.loaded import loaded
 from yarpy.data.python.place import located
 from yarpy.data.reader import KEPT, SMALL, read_fresh, read_planned
+from yarpy.data.sig.cloud_head import HEAD as CLOUD_HEAD
+from yarpy.data.sig.cloud_head import POINTS, cloud_size
+from yarpy.data.sig.cloud_head import SIZES as CLOUD_KINDS
 from yarpy.data.sig.image import Image
 from yarpy.data.sig.vector import Vector
 from yarpy.data.stamp import Stamp
@@ -81,6 +85,7 @@ _read_i32 = Struct("<i").unpack_from
 _MAT: Final = 0x0074616D
 _KEY: Final = description.KEY.encode()
 _EMPTY: Final = Struct("<ii").pack(LIST, 0)
+_SOUND: Final = Struct("<3i").pack(LIST, 4, 0)
 _READ_SMALL: Final = (LIST, LIST + STRING)
 LISTS: Final = frozenset((list, tuple, Bottle))  # what `list_blocks` encodes, with a step less
 _BYTES: Final = frozenset((bytes, bytearray, memoryview))
@@ -170,8 +175,9 @@ def any_list(items: Any) -> Blocks:
 def encode_text(obj: Any) -> bytes:
     """The payload in the text spelling: one line of Bottle text, without its end.
 
-    A Stamp has its own text. What has no binary Bottle form (Sound, PointCloud) is an empty line,
-    as it is from C++.
+    A Stamp has its own text. What is no Bottle (Sound, PointCloud) is a blob of its bytes with a
+    description behind it, which tells people what it is and is read back; from C++ it is an empty
+    line.
     """
     if isinstance(obj, (list, tuple, dict)) and described.is_needed(obj):
         return encode_as_text(b"".join(encode(obj)))
@@ -189,12 +195,21 @@ def encode_text(obj: Any) -> bytes:
 
 
 def encode_as_text(message: Buffer) -> bytes:
-    """The text spelling of a message that is in the binary one."""
+    """The text spelling of a message that is in the binary one. A user's own layout, which nobody
+    could read out of it, is an empty line."""
     try:
-        text = print_text(read_bottle(message))
+        text = print_text(listed(message))
     except DecodeError:
         text = ""
     return text.encode("utf-8", "surrogateescape")
+
+
+def listed(message: Buffer) -> Bottle:
+    """The list that a message is; of a Sound or a PointCloud, which are none, a blob of it with its
+    description. Raises DecodeError."""
+    if bytes(message[:12]) == _SOUND or cloud_size(message):
+        message = b"".join(described.blocks(decode(message)))
+    return read_bottle(message)
 
 
 def has_own_text(obj: object) -> bool:
@@ -218,8 +233,8 @@ def decode(view: Buffer, question: Question | None = None) -> Any:
     """The natural value of a payload.
 
     A Bottle; a single value if it was sent as one; a Vector over the received bytes for a list of
-    floats; an Image; a Sound; what its description says, if it has one. DecodeError or Truncated if
-    it is none of these.
+    floats; an Image; a Sound; a PointCloud; what its description says, if it has one. DecodeError
+    or Truncated if it is none of these.
     """
     try:
         if len(view) < 12:
@@ -236,6 +251,8 @@ def decode(view: Buffer, question: Question | None = None) -> Any:
                     return restored.restore(view, start)
             if count == 1:
                 tag = _read_i32(view, 8)[0]
+                if tag in CLOUD_KINDS and cloud_size(view):
+                    return _cloud(view)
                 bottle = read_bottle(view)
                 return bottle if tag & GROUP_MASK else bottle[0]
             if count == 4 and len(view) >= 16:
@@ -248,6 +265,8 @@ def decode(view: Buffer, question: Question | None = None) -> Any:
                     from yarpy.data.sig.sound import Sound
 
                     return Sound.from_wire(view)
+        elif len(view) >= CLOUD_HEAD.size and _read_i32(view, 13)[0] == POINTS and cloud_size(view):
+            return _cloud(view)
         elif count and (code == LIST + FLOAT64 or code == LIST + FLOAT32):
             return Vector.from_wire(view)
         if code in _READ_SMALL and len(view) <= SMALL:  # as nearly always, with a step less
@@ -255,12 +274,20 @@ def decode(view: Buffer, question: Question | None = None) -> Any:
             return read_fresh(Bottle, Property.from_bottle, small, Numbers.over)[0]
         return read_bottle(view)
     except DecodeError:
+        if cloud_size(view):  # 256 wide
+            return _cloud(view)
         other = older(view)
         if other is None:
             raise
     if question is not None:
         question.note_yarp4()
     return _decode_older(other)
+
+
+def _cloud(view: Buffer) -> Any:
+    from yarpy.data.sig.pointcloud import PointCloud
+
+    return PointCloud.from_wire(view)
 
 
 def _decode_older(view: Buffer) -> Any:
@@ -281,6 +308,8 @@ def decode_leading(buffer: bytes) -> tuple[Any, int] | None:
     if not 12 <= len(buffer) <= SMALL:
         return None
     code, count = _read_head(buffer)
+    if len(buffer) >= CLOUD_HEAD.size and _read_i32(buffer, 13)[0] == POINTS and cloud_size(buffer):
+        return None
     if code - LIST in KEPT and count > 0:  # numbers alone, whose length their count says
         end = 8 + count * FIXED[code - LIST][1]
         return (decode(buffer[:end]), end) if 12 <= end <= len(buffer) else None

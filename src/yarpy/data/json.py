@@ -6,6 +6,8 @@
     bytes                           {"type": "blob", "base64": "AQL/"}
     an array of no type of YARP's   {"type": "array", "dtype": "<f2", "shape": [2], "base64": ...}
     complex                         [real, imaginary]
+    PointCloud                      {"type": "pointcloud", "kind": "xyz", "width": 1, "height": 1,
+                                     "points": [[0.5, 1.0, 2.0]]}
 
 Rules: every message gives valid JSON. Where C++ gives valid JSON this is the same value, so
 booleans, which are vocabs, are the strings "true" and "false", and a list of pairs is an object;
@@ -45,7 +47,8 @@ def to_json(value: object, outer: Outer = "auto", *, pixels: bool = True) -> str
     """The JSON text of a message or of anything that can be sent as one; TypeError for the rest.
 
     outer: whether the outermost list becomes an array or an object; `auto`: what it looks like.
-    pixels: whether an image comes with its pixels, or only with its size and kind.
+    pixels: whether an image comes with its pixels and a cloud with its points, or only with size
+    and kind.
     """
     text = plain_json(value) if outer == "auto" else None
     if text is None:
@@ -120,9 +123,10 @@ def _plain_top(value: object, outer: Outer, pixels: bool) -> Any:
 
 
 def _described(value: object, pixels: bool = True) -> Any:
-    """Images, matrices and sounds by their parts; None for other kinds."""
+    """Images, matrices, sounds and clouds of points by their parts; None for other kinds."""
     from yarpy.data.sig.image import Image
     from yarpy.data.sig.matrix import Matrix
+    from yarpy.data.sig.pointcloud import PointCloud
     from yarpy.data.sig.sound import Sound
     from yarpy.data.sig.vector import Vector
 
@@ -144,6 +148,13 @@ def _described(value: object, pixels: bool = True) -> Any:
             "frequency": value.frequency,
             "channels": value.array.tolist(),
         }
+    if isinstance(value, PointCloud):
+        facts = {_TYPE: "pointcloud", "kind": value.kind}
+        facts |= {"width": value.width, "height": value.height}
+        if not pixels:
+            return facts
+        points = value.array.reshape(-1).tolist()
+        return {**facts, "points": [[_number(number) for number in point] for point in points]}
     if is_array(value):
         facts = {_TYPE: "array", "dtype": value.dtype.str, "shape": [*value.shape]}
         return {**facts, "base64": _base64(value.tobytes())} if pixels else facts

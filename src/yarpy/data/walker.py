@@ -2,9 +2,9 @@
 
 Replies and some messages come without any length. A Walker finds their end in a buffer that is
 still growing, without building objects. Rules: no byte is read twice, nothing is allocated on a
-header's word, and bytes that cannot be a message are refused at the first wrong one. Messages of
-YARP 4.0 are known by the tags that only it has; where there is none before a float32, the asker
-says so.
+header's word, and bytes that cannot be a message are refused at the first wrong one. A PointCloud
+may begin as a list does: where its header is there, or most of it, it is one. Messages of YARP 4.0
+are known by the tags that only it has; where there is none before a float32, the asker says so.
 """
 
 from __future__ import annotations
@@ -12,6 +12,7 @@ from __future__ import annotations
 from struct import Struct
 from typing import Protocol
 
+from yarpy.data.sig.cloud_head import HEAD, cloud_size, is_likely_cloud, may_be_cloud
 from yarpy.data.value import (
     BLOB,
     DICT,
@@ -49,7 +50,8 @@ class Walk(Protocol):
 
 
 class Walker:
-    """Finds the end of one Bottle (or of a Sound, which only looks like one, also within one).
+    """Finds the end of one Bottle (or of a Sound, which only looks like one, also within one), or
+    of a PointCloud.
 
     Call `advance` with everything received so far, again and again, until `done`. Every call
     returns the least number of bytes that the message can have; if that is more than have come,
@@ -57,13 +59,24 @@ class Walker:
     this is not a message, or longer than `limit` bytes. `yarp4`: it comes from YARP 4.0.
     """
 
-    __slots__ = ("_begun", "_kinds", "_left", "_owed", "_pos", "_widths", "done", "limit")
+    __slots__ = (
+        "_begun",
+        "_kinds",
+        "_left",
+        "_looked",
+        "_owed",
+        "_pos",
+        "_widths",
+        "done",
+        "limit",
+    )
 
     def __init__(self, limit: int = 1 << 30, yarp4: bool = False) -> None:
         self._widths = WIDTHS_4 if yarp4 else WIDTHS_3
         self.limit = limit
         self.done = False
         self._begun = False
+        self._looked = False  # whether it is a cloud
         self._pos = 0
         # One entry per list that is open: the tag of its elements (0: each has its own), and how
         # many are to come. `_owed` is the least that all of these can take.
@@ -76,9 +89,15 @@ class Walker:
         size = len(view)
         if self.done:
             return self._pos
-        if not self._begun:
+        if not self._looked:
             if size < 8:
                 return 8
+            code, count = _read_pair(view, 0)
+            cloud = self._cloud(view, size, code, count)
+            if cloud:
+                return cloud
+            self._looked = size >= HEAD.size
+        if not self._begun:
             code, count = _read_pair(view, 0)
             if code == LIST and count == 4:
                 if size < 12:
@@ -89,6 +108,24 @@ class Walker:
             self._pos = 8
             self._open(code & UNIT_MASK, count)
         return self._walk(view, size)
+
+    def _cloud(self, view: Buffer, size: int, code: int, count: int) -> int:
+        """The bytes of a PointCloud, or of its header while that is not all there; 0 for a message
+        that is none, or that has to be read as a Bottle because it may be one that ends here.
+        """
+        if size >= HEAD.size:
+            cloud = cloud_size(view)
+            if cloud:
+                self._pos, self._owed = cloud, 0
+                self._check(cloud)
+                self.done = cloud <= size
+            return cloud
+        kind = code & UNIT_MASK
+        width = self._widths.get(kind, 4 if kind in (STRING, BLOB) or kind in ONLY_4 else 0)
+        if kind and not width:  # no Bottle has such a code
+            return HEAD.size if size < 12 or may_be_cloud(view) else 0
+        longer = 8 + count * (width or 5) >= HEAD.size
+        return HEAD.size if longer or is_likely_cloud(view) else 0
 
     def _walk(self, view: Buffer, size: int) -> int:
         kinds, left = self._kinds, self._left

@@ -8,9 +8,10 @@
 Rules: writing, every message gives valid XML-RPC, with the same bytes as C++ YARP where that writes
 valid XML-RPC: a list of pairs is a struct, `list` and `dict` in front of a list say what it is.
 What it leaves out or spoils has a form of its own here: long integers `<i8>`, truth `<boolean>`,
-blobs `<base64>`, empty lists, numbers with more than six decimals. Reading is the work of the
-standard library, behind defusedxml: no document types, no entities. Whatever is wrong is a
-DecodeError.
+blobs `<base64>`, empty lists, numbers with more than six decimals. A Sound, a PointCloud and arrays
+that YARP has no type for are blobs; what a description says for Python is left out. Reading is the
+work of the standard library, behind defusedxml: no document types, no entities. Whatever is wrong
+is a DecodeError.
 """
 
 from __future__ import annotations
@@ -22,6 +23,7 @@ from typing import Any, Final
 
 from yarpy.data import codec
 from yarpy.data.bottle import Bottle
+from yarpy.data.python.description import KEY
 from yarpy.data.text import plain_text
 from yarpy.data.value import MAX_DEPTH, Vocab, fits
 from yarpy.errors import DecodeError
@@ -139,9 +141,11 @@ def _elements(message: object) -> Sequence[Any]:
         return ["dict", *(Bottle(pair) for pair in message.items())]
     if isinstance(message, (str, int, float, bytes)):
         return [message]
-    wire = b"".join(map(bytes, codec.encode(message)))
-    found = codec.decode_as(wire, Bottle)
-    return found if isinstance(found, Bottle) else [found]
+    found = codec.listed(b"".join(map(bytes, codec.encode(message))))
+    last = found[-1] if found else None
+    if isinstance(last, list) and last[:1] == [KEY]:
+        del found[-1]
+    return found
 
 
 def _top(value: object, terse: bool) -> str:

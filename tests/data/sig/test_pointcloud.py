@@ -25,7 +25,12 @@ def test_golden():
     assert joined(cloud) == MESSAGE == joined(PointCloud(GOLDEN["params"]))
     assert codec.decode_as(memoryview(MESSAGE), PointCloud) == cloud
     assert b"".join(codec.encode(cloud)) == MESSAGE
-    assert codec.encode_text(cloud) == b""
+    assert codec.decode(MESSAGE) == cloud
+    text = codec.encode_text(cloud)
+    assert text.startswith(b"{2 0 0 0 1 0 0 0 ") and text.endswith(
+        b"} (yarpy.type (pointcloud) 56)"
+    )
+    assert codec.decode_text(text) == cloud == codec.decode_text_as(text, PointCloud)
     for size in range(len(MESSAGE)):
         with pytest.raises(Truncated) as caught:
             PointCloud.from_wire(MESSAGE[:size])

@@ -8,9 +8,9 @@
 Rules: in binary, the payloads of all frames form one byte stream, as on a unix_stream connection;
 each outgoing block is a frame. In JSON each frame is a message or a reply; `&admin` sends them to
 the administration, `&envelope` wraps what is read as `{"envelope": "7 1.5", "data": [...]}`;
-pictures are sent as size and kind only, or whole with `&pixels`. Pings are answered, a close is
-answered and ends the connection. A page that reads too slowly misses messages. `origin` says which
-pages may write. wsproto reads and writes the frames.
+pictures and clouds are sent as size and kind only, or whole with `&pixels`. Pings are answered, a
+close is answered and ends the connection. A page that reads too slowly misses messages. `origin`
+says which pages may write. wsproto reads and writes the frames.
 """
 
 from __future__ import annotations
@@ -144,8 +144,9 @@ class WebSocket(Carrier):
         if self.json:
             self._write(stream, TEXT, self._as_json(packet))
             return
+        blocks = packet.blocks  # or it cannot be sent, and then nothing of it may leave
         self._write(stream, BINARY, framing.encode_command(packet.key, packet.envelope))
-        for block in packet.blocks:
+        for block in blocks:
             self._write(stream, BINARY, block)
 
     def prepare(self, packet: Packet) -> bool:

@@ -22,7 +22,7 @@ import click
 import yarpy
 from yarpy.cli.output import print_json, print_line
 from yarpy.cli.ports import ANY, hear_from, open_port
-from yarpy.cli.shown import cloud_of, is_described, summary, text_of
+from yarpy.cli.shown import is_described, summary, text_of
 from yarpy.cli.signals import Interrupted
 from yarpy.cli.stderr import complain
 
@@ -67,17 +67,10 @@ class Printer:
         """Print `message`; False when it says that there will be no more."""
 
         value = _value(message)
-        if isinstance(value, yarpy.Sound):  # which is no list
+        if isinstance(value, (yarpy.Sound, yarpy.PointCloud)):  # which are no lists
             self._print(message, value, summary(value))
             return True
-        try:
-            bottle = message.as_(yarpy.Bottle)
-        except yarpy.DecodeError:
-            cloud = cloud_of(message)
-            if cloud is None:
-                raise
-            self._print(message, cloud, summary(cloud))
-            return True
+        bottle = message.as_(yarpy.Bottle)
         verbatim = len(bottle) == 2 and type(bottle[0]) is int and type(bottle[1]) is str
         if verbatim and bottle[0] == 1:
             return False

@@ -1,26 +1,24 @@
 """PointCloud: points of one kind in rows, as yarp::sig::PointCloud sends them.
 
-    i32 width, i32 height, i32 kind, i8 dense, i32 266, i32 points, then the points
+    the header (`cloud_head`), then the points
 
-Rules: the header is not a Bottle and nothing in it says "point cloud", so a message is only read as
-one on request. Points are single precision, in groups of 16 bytes; a received cloud is a view of
-them.
+Rules: the header is not a Bottle. Points are single precision, in groups of 16 bytes; a received
+cloud is a view of them.
 """
 
 from __future__ import annotations
 
 from dataclasses import dataclass
-from struct import Struct
 from typing import TYPE_CHECKING, Any, Self
 
 from yarpy.data.pickling import Wired
+from yarpy.data.sig.cloud_head import HEAD, POINTS
 from yarpy.errors import DecodeError, Truncated
 
 if TYPE_CHECKING:
     import numpy as np
     from numpy.typing import ArrayLike, NDArray
 
-_HEAD = Struct("<iiibii")
 
 _XYZ = {"x": 0, "y": 4, "z": 8}
 
@@ -132,21 +130,21 @@ class PointCloud(Wired):
     @classmethod
     def from_wire(cls, view: bytes | bytearray | memoryview) -> Self:
         """A PointCloud over the bytes of a message; DecodeError if they are not one."""
-        if len(view) < _HEAD.size:
-            raise Truncated(f"a PointCloud has a header of {_HEAD.size} bytes", _HEAD.size)
-        width, height, code, dense, list_code, count = _HEAD.unpack_from(view)
-        if list_code != 266 or width < 0 or height < 0 or count != width * height:
+        if len(view) < HEAD.size:
+            raise Truncated(f"a PointCloud has a header of {HEAD.size} bytes", HEAD.size)
+        width, height, code, dense, list_code, count = HEAD.unpack_from(view)
+        if list_code != POINTS or width < 0 or height < 0 or count != width * height:
             raise DecodeError("not a PointCloud: the header is a different one")
         kind = _BY_CODE.get(code)
         if kind is None:
             raise DecodeError(f"a PointCloud with points of the unknown kind {code}")
-        end = _HEAD.size + kind.size * count
+        end = HEAD.size + kind.size * count
         if len(view) < end:
             raise Truncated(f"this PointCloud takes {end} bytes, here are {len(view)}", end)
         self = cls.__new__(cls)
         self.width, self.height, self.kind, self.dense = width, height, kind.name, dense != 0
         self._array = None
-        self._data = memoryview(view)[_HEAD.size : end]
+        self._data = memoryview(view)[HEAD.size : end]
         return self
 
     @classmethod
@@ -167,7 +165,7 @@ class PointCloud(Wired):
     def to_wire(self) -> tuple[bytes | memoryview, ...]:
         """Header and points, two blocks; the points are the memory of the cloud itself."""
         code, count = KINDS[self.kind].code, self.width * self.height
-        head = _HEAD.pack(self.width, self.height, code, self.dense, 266, count)
+        head = HEAD.pack(self.width, self.height, code, self.dense, POINTS, count)
         return (head, self._data) if count else (head,)
 
     def __len__(self) -> int:

@@ -5,8 +5,8 @@
     text          1 2 CR LF
     reply_page    what the program put under `web`
 
-Rules: each form of a message is made once for all its readers. A picture is sent as size and kind
-only, unless a JSON reader asks for pixels; to see it, use mjpeg.
+Rules: each form of a message is made once for all its readers. A picture or a cloud of points is
+sent as size and kind only, unless a JSON reader asks for pixels; to see a picture, use mjpeg.
 """
 
 from __future__ import annotations
