@@ -5,7 +5,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from yarpy.contact import Contact
-from yarpy.names.registration_line import is_last, parse_registration, plain, registration_line
+from yarpy.names.registration_line import parse_registration, plain, registration_line
 
 LINES = [
     (Contact("tcp", "/x", "127.0.0.1", 21102), "name /x ip 127.0.0.1 port 21102 type tcp"),
@@ -41,11 +41,6 @@ def test_there_and_back(contact: Contact, text: str | None) -> None:
 )
 def test_no_registration(line: str) -> None:
     assert parse_registration(line) is None
-
-
-def test_where_readers_stop() -> None:
-    assert is_last("*** end of message") and is_last("[ok]")
-    assert not is_last("*") and not is_last("") and not is_last("port (error -2)")
 
 
 def test_a_name_cannot_forge_a_line() -> None:

@@ -61,9 +61,3 @@ def plain(text: str) -> str:
     for raw, escaped in (("\\", "\\\\"), ('"', "\\"), ("\n", "\\n"), ("\r", "\\r"), ("\0", "\\0")):
         text = text.replace(raw, escaped)
     return text
-
-
-def is_last(line: str) -> bool:
-    """Return whether a C++ client stops reading here: more than one character, beginning with * or
-    [."""
-    return len(line) > 1 and line[0] in "*["

@@ -5,7 +5,7 @@ import math
 import numpy as np
 import pytest
 
-from yarpy.kits.sim.head import BASELINE, GRAVITY, eye_pose, imu_pose, inertia
+from yarpy.kits.sim.head import BASELINE, GRAVITY, IMU, Pose, _beyond, _chain, eye_pose, inertia
 
 REST = (0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
 
@@ -14,6 +14,12 @@ def axes(angles, side="left"):
     """Where an eye looks, what is right of it and what is above it, in the world."""
     rotation = np.array(eye_pose(angles, side).rotation)
     return rotation[:, 2], rotation[:, 0], -rotation[:, 1]
+
+
+def imu_pose(angles):
+    """The pose of the inertial unit, x forward, y left, z up when the head is upright."""
+    head = _chain(angles)[-1]
+    return Pose(head.rotation, _beyond(head, IMU))
 
 
 def moved(joint, angle):

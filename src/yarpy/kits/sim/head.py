@@ -64,12 +64,6 @@ def eye_pose(angles: Sequence[float], side: Side) -> Pose:
     return Pose(of.after(looking, _CAMERA), _beyond(head, place))
 
 
-def imu_pose(angles: Sequence[float]) -> Pose:
-    """Return the pose of the inertial unit: x forward, y left, z up when the head is upright."""
-    head = _chain(angles)[-1]
-    return Pose(head.rotation, _beyond(head, IMU))
-
-
 def inertia(
     angles: Sequence[float], speeds: Sequence[float], accelerations: Sequence[float]
 ) -> Inertia:

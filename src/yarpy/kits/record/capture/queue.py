@@ -50,7 +50,6 @@ class Count:
     left_out: int = 0
     missed: int = 0
     replaced: int = 0
-    last_ns: int = 0
     next_ns: int = 0  # before this, messages are left out
     sequence: int = -1  # of the envelope of the last one that was written
     broken: bool = True  # something that came was not taken
@@ -122,7 +121,6 @@ class MessageQueue:
             self.held += size
             count.messages += 1
             count.bytes += length
-            count.last_ns = now
             follows, count.broken = not count.broken, False
             if places is not None:
                 places.append(len(self._waiting))
