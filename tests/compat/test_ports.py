@@ -1,7 +1,11 @@
 """Classes that ports have in common, what they carry, and what is said to name servers."""
 
+import threading
+import time
+
 import pytest
-from support.wait import wait_until
+from support.lasted import lasted
+from support.wait import HANG, wait_until
 
 import yarp
 
@@ -183,3 +187,27 @@ def test_readers_that_are_made(alone) -> None:
     assert into.open("/made/in") and yarp.Network.sendMessage("/made/in", yarp.Bottle("hi"))
     wait_until(lambda: seen == ["hi"])
     into.close()
+
+
+def test_a_reader_that_is_at_work_is_not_waited_for_for_long(
+    alone, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """As where Ctrl-C ends a module whose `respond` asks somebody who is silent."""
+    begun, go_on = threading.Event(), threading.Event()
+
+    class Reader(yarp.PortReader):
+        def read(self, connection: yarp.ConnectionReader) -> bool:
+            if connection.isValid():  # it is not, where the reader is told of the end
+                begun.set()
+                go_on.wait(HANG)
+            return True
+
+    reader, into = Reader(), yarp.Port()
+    into.setReader(reader)
+    assert into.open("/slow/in") and yarp.Network.sendMessage("/slow/in", yarp.Bottle("hi"))
+    assert begun.wait(HANG)
+    started = time.monotonic()
+    into.close()
+    assert lasted(started) < 8
+    go_on.set()
+    assert "/slow/in: its reader is still at work" in capsys.readouterr().err

@@ -260,7 +260,7 @@ def test_question_holds_its_connection_until_it_is_answered() -> None:
     assert answers == ["yes"]
 
 
-@pytest.mark.parametrize("how", ["settle", "interrupt"])
+@pytest.mark.parametrize("how", ["settle", "close"])
 def test_question_that_is_left_open_is_closed(how: str) -> None:
     box, link = Rendezvous(), Link()
     question = message("ask", CALL)
@@ -271,6 +271,22 @@ def test_question_that_is_left_open_is_closed(how: str) -> None:
     getattr(box, how)()
     thread.join(HANG)
     assert not thread.is_alive()
+    assert question.answer.forsaken is (how == "close")
+
+
+def test_question_that_was_read_is_answered_though_the_reader_was_interrupted() -> None:
+    box, link, answers = Rendezvous(), Link(), []
+    question = message("ask", CALL)
+    question.answer = way_back(answers.append)
+    thread = threading.Thread(target=box.put, args=(link, question), daemon=True)
+    thread.start()
+    found = box.take(5)
+    assert found is not None
+    box.interrupt()
+    assert thread.is_alive()
+    found.reply("yes")
+    thread.join(HANG)
+    assert answers == ["yes"]
 
 
 def test_connection_goes_on_when_its_asker_has_gone() -> None:

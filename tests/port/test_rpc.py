@@ -53,6 +53,43 @@ CALLS = [
 ]
 
 
+@pytest.mark.parametrize("carrier", ["tcp", "memory"])
+@pytest.mark.parametrize(
+    "how", ["waits", "was read", "was read, then interrupted", "was read from the socket"]
+)
+def test_a_question_that_a_closed_port_never_answered_is_no_empty_answer(
+    how: str, carrier: str, names: LocalNames
+) -> None:
+    """An empty answer is one, of a server that has nothing to say."""
+    failed: list[str] = []
+    reader = Port("/in", names=names)
+    with RpcClient("/in", carrier=carrier, names=names) as client:
+        if how == "was read from the socket":  # by a reader that waits there: the second question
+            first = threading.Thread(target=lambda: reader.read(timeout=HANG).reply("yes"))
+            first.start()
+            assert client.call("first", timeout=HANG) == "yes"
+            first.join(HANG)
+
+        def ask() -> None:
+            try:
+                failed.append(repr(client.call("go", timeout=HANG)))
+            except LinkClosed as error:
+                failed.append(str(error))
+
+        asking = threading.Thread(target=ask)
+        asking.start()
+        if how == "waits":
+            wait_until(lambda: reader.waiting == 1)
+        else:
+            assert reader.read(timeout=HANG).wants_reply
+        if "interrupted" in how:
+            reader.interrupt()
+        reader.close()
+        asking.join(HANG)
+        assert len(failed) == 1
+        assert "nobody knows whether it has done what it was told" in failed[0]
+
+
 @pytest.mark.parametrize(("arguments", "heard"), CALLS)
 def test_arguments_are_the_message(
     arguments: tuple[object, ...], heard: object, names: LocalNames

@@ -11,7 +11,7 @@ import sys
 import threading
 import weakref
 from collections.abc import Callable
-from typing import Any
+from typing import Any, Final
 
 import yarpy
 from yarp import _names
@@ -21,6 +21,9 @@ from yarp._log import say
 from yarp._memory import encoded
 from yarp._property import Property
 from yarp._type import Type
+
+# Seconds for which closing waits for a reader that is at work. C++ waits as long as it takes.
+PATIENCE: Final = 2.0
 
 # Ports that a program leaves open are closed when it ends, as C++ does.
 _open: weakref.WeakSet[Contactable] = weakref.WeakSet()
@@ -208,7 +211,13 @@ class Contactable:
     def _join(self) -> None:
         pump, self._pump = self._pump, None
         if pump is not None and pump is not threading.current_thread():
-            pump.join(10.0)
+            pump.join(PATIENCE)
+            if pump.is_alive():
+                say(
+                    "WARNING",
+                    f"|yarp.os.Port| {self._name}: its reader is still at work, and is not waited "
+                    "for any longer",
+                )
 
     def _serve(self, port: Any) -> None:
         while not port.closed:

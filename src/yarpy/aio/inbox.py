@@ -36,14 +36,16 @@ class TaskRendezvous(Rendezvous):
         # copy is garbage, nobody is left who could answer.
         copy = message.replaced(message.payload)
         copy.spelling, copy.answer = message.spelling, _Reply(answer, over)
-        if self.stopped:
-            over()  # `interrupt` may have looked before it was there
+        if self.closed:  # `close` may have looked before it was there
+            self._forsake(message)
+            over()
         return copy
 
-    def interrupt(self) -> None:
-        super().interrupt()
+    def close(self) -> None:
+        super().close()
         for offer in tuple(self._asked):
             self._asked.discard(offer)
+            self._forsake(offer.message)
             offer.leave()
 
 

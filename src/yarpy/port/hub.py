@@ -245,7 +245,7 @@ class Hub:
         self.life.interrupted = True
         self.life.calls.end(f'"{self.name}" is interrupted')
         self.outputs.end_calls("interrupted")
-        self.inputs.end_reading("interrupted")
+        self.inputs.interrupt()
 
     def resume(self) -> None:
         """Undo `interrupt`; a closed port stays closed."""
@@ -257,7 +257,7 @@ class Hub:
         self.inputs.mailbox.resume()
         if self.life.closing:  # by another thread, or a signal handler, meanwhile
             self.outputs.end_calls("closed")
-            self.inputs.end_reading("closed")
+            self.inputs.end_reading()
 
     def close(self, seconds: float | None = None) -> None:
         """Close every connection in good order, then the port; the name is given back. All of it
@@ -286,7 +286,7 @@ class Hub:
 
     def _leave(self) -> None:
         self.actions.reconnect.forget(self)
-        self.inputs.end_reading("closed")
+        self.inputs.end_reading()
         if self.membership is not None:
             self.membership.leave()
         # Connections that are just arriving are told to leave as well.

@@ -293,7 +293,7 @@ class Inputs:
         with self.lock:
             if self._hub.life.over:
                 mailbox.why = self.mailbox.why
-                mailbox.interrupt()
+                mailbox.close() if self.mailbox.closed else mailbox.interrupt()
             self.mailbox, self.receive = mailbox, mailbox.put
 
     # -- going ------------------------------------------------------------------------------------
@@ -344,10 +344,15 @@ class Inputs:
             self._hub.membership.lost()
         return known
 
-    def end_reading(self, state: str) -> None:
+    def interrupt(self) -> None:
         """Let nobody wait to read any more."""
-        self.mailbox.why = f'"{self._hub.name}" is {state}'
+        self.mailbox.why = f'"{self._hub.name}" is interrupted'
         self.mailbox.interrupt()
+
+    def end_reading(self) -> None:
+        """Let nobody wait to read, or for an answer, any more."""
+        self.mailbox.why = f'"{self._hub.name}" is closed'
+        self.mailbox.close()
 
     def close(self) -> None:
         """End them, with the answers that are on their way, and wait for their threads."""

@@ -40,6 +40,7 @@ class Mailbox:
 
     def __init__(self) -> None:
         self.stopped = False
+        self.closed = False  # for good
         self.drops = 0
         self.notify: Callable[[], None] | None = None  # there is something to take, or an end
         self.why = "the port is closed or interrupted"  # what readers are told then
@@ -132,6 +133,11 @@ class Mailbox:
             finally:
                 self._offer(_STOP)
 
+    def close(self) -> None:
+        """Interrupt it for good: questions that are open get no answer, not an empty one."""
+        self.closed = True
+        self.interrupt()
+
     def resume(self) -> None:
         """Undo `interrupt`."""
         with self._gate:
@@ -175,6 +181,11 @@ class Mailbox:
 
     def _discard(self, token: object) -> None:
         """Drop and count what a token stands for; a second time does nothing."""
+
+    def _forsake(self, message: Message) -> None:
+        """Nobody answers it any more, if this is closed."""
+        if self.closed and message.answer is not None:
+            message.answer.forsaken = True
 
     def _drop_once(self, token: Waiting | Offer) -> None:
         """As `_drop`, for a message that has waited. In here Python looks for no signals."""
@@ -368,6 +379,7 @@ class Rendezvous(Mailbox):
         offer = Offer(link, message)
         with self._gate:
             if self.stopped:
+                self._forsake(message)
                 self._drop(link)
                 return
             self._offer(offer)
@@ -401,8 +413,9 @@ class Rendezvous(Mailbox):
             token.done.wake()
         else:
             self.held[threading.current_thread()] = token
-            if self.stopped:
-                token.done.wake()  # `interrupt` may have looked before it was there
+            if self.closed:  # `close` may have looked before it was there
+                self._forsake(token.message)
+                token.done.wake()
         return token.message
 
     def _put_back(self, token: object) -> None:
@@ -411,12 +424,14 @@ class Rendezvous(Mailbox):
 
     def _discard(self, token: object) -> None:
         assert isinstance(token, Offer)
+        self._forsake(token.message)
         self._drop_once(token)
         token.done.wake()
 
-    def interrupt(self) -> None:
-        super().interrupt()
+    def close(self) -> None:
+        super().close()
         for thread, question in tuple(self.held.items()):
+            self._forsake(question.message)
             if isinstance(question, Offer):
                 self._leave(thread)
 
@@ -468,6 +483,7 @@ class Callback(Mailbox):
         except FAILURES as error:
             link.failure = f"{type(error).__name__}: {error}"
             log_failure(log, error, "%s: the callback failed on %r", link.owner.name, message)
+        self._forsake(message)
         with self._gate:
             self._drop(link)
 

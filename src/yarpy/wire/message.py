@@ -231,7 +231,7 @@ class Answer:
     then looks whether it is still `busy`.
     """
 
-    __slots__ = ("_ended", "by", "left", "right", "then")
+    __slots__ = ("_ended", "by", "forsaken", "left", "right", "then")
 
     def __init__(self, by: Answering, then: Callable[[], None] | None = None) -> None:
         self.by = by
@@ -239,6 +239,7 @@ class Answer:
         self.left: Callable[[], None] | None = None
         self.right = [True]  # to answer; a thread takes it out, which only one can
         self._ended = False  # who had the right has used it
+        self.forsaken = False  # the port was closed before anybody did
 
     @property
     def busy(self) -> bool:

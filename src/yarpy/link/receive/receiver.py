@@ -326,6 +326,9 @@ class Receiver:
             # Without any answer a caller waits for ever; one in C++ takes the acknowledgement for
             # it. For a person at a text prompt, a name service or a page, silence is better than an
             # empty answer.
+            if answer.forsaken:
+                self.question = None
+                raise LinkClosed("the port was closed before it had answered")
             try:
                 if self.carrier.spelling != "text" and not self.carrier.delivery.lossy:
                     self.reply(Bottle())
