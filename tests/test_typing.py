@@ -6,8 +6,8 @@ import pytest
 from support import page as pages
 from support.type_check import CHECKERS, faults
 
-from yarpy.kits.thrift.include import text_interface
-from yarpy.kits.thrift.module import python, stubs
+from yarpy.kits.thrift.file.include import text_interface
+from yarpy.kits.thrift.generate.module import python, stubs
 
 ROOT = Path(__file__).parents[1]
 

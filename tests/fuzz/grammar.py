@@ -33,8 +33,8 @@ from yarpy.errors import (
     RemoteProtocolError,
     UnknownType,
 )
-from yarpy.kits.thrift.include import text_interface
-from yarpy.kits.thrift.module import python
+from yarpy.kits.thrift.file.include import text_interface
+from yarpy.kits.thrift.generate.module import python
 from yarpy.limit import HTTP_CHALLENGES
 from yarpy.monitors.constraint import Constraint
 from yarpy.names.discovery import respond

@@ -7,9 +7,9 @@ import pytest
 
 from yarpy import idl
 from yarpy.errors import DecodeError
-from yarpy.kits.thrift.include import read_interface
+from yarpy.kits.thrift.file.include import read_interface
+from yarpy.kits.thrift.generate.module import stubs
 from yarpy.kits.thrift.library import load, loads
-from yarpy.kits.thrift.module import stubs
 
 
 def test_a_file_is_a_module(tmp_path: Path) -> None:

@@ -12,9 +12,9 @@ from pathlib import Path
 from types import ModuleType
 from typing import Final
 
-from yarpy.kits.thrift.include import read_interface, text_interface
-from yarpy.kits.thrift.interface import Interface
-from yarpy.kits.thrift.module import import_line, python
+from yarpy.kits.thrift.file.include import read_interface, text_interface
+from yarpy.kits.thrift.file.interface import Interface
+from yarpy.kits.thrift.generate.module import import_line, python
 
 _Stamp = tuple[tuple[str, int, int], ...]
 

@@ -41,10 +41,10 @@ def command(
     files: tuple[str, ...], check: bool, gen: str, out: str, folders: tuple[str, ...]
 ) -> int:
     """Write a Python module and its stubs for .thrift files, or TypeScript, or check them."""
-    from yarpy.kits.thrift.include import read_interface
-    from yarpy.kits.thrift.interface import Interface
-    from yarpy.kits.thrift.module import python, stubs, summary
-    from yarpy.kits.thrift.typescript import RUNTIME, runtime, typescript
+    from yarpy.kits.thrift.file.include import read_interface
+    from yarpy.kits.thrift.file.interface import Interface
+    from yarpy.kits.thrift.generate.module import python, stubs, summary
+    from yarpy.kits.thrift.generate.typescript import RUNTIME, runtime, typescript
 
     places = [Path(folder) for folder in folders]
     found: dict[Path | None, Interface] = {}

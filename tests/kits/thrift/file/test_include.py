@@ -6,7 +6,7 @@ from pathlib import Path
 import pytest
 
 from yarpy.errors import DecodeError
-from yarpy.kits.thrift.include import read_interface
+from yarpy.kits.thrift.file.include import read_interface
 
 
 def test_included_files(tmp_path: Path) -> None:

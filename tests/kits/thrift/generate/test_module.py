@@ -12,9 +12,9 @@ from support.type_check import type_check
 from support.wait import HANG
 
 from yarpy.errors import DecodeError
-from yarpy.kits.thrift.include import read_interface, text_interface
+from yarpy.kits.thrift.file.include import read_interface, text_interface
+from yarpy.kits.thrift.generate.module import python, stubs
 from yarpy.kits.thrift.library import load, loads
-from yarpy.kits.thrift.module import python, stubs
 
 TEXT = """\
 const i32 LIMIT = 4

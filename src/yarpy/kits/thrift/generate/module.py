@@ -16,8 +16,7 @@ import re
 from typing import Final
 
 from yarpy.kits.thrift import kind as kinds
-from yarpy.kits.thrift.code import Code, quoted, taken
-from yarpy.kits.thrift.document import (
+from yarpy.kits.thrift.file.document import (
     ConstText,
     EnumText,
     FieldText,
@@ -27,7 +26,8 @@ from yarpy.kits.thrift.document import (
     TypedefText,
     numbered,
 )
-from yarpy.kits.thrift.interface import Interface, enum_base, external
+from yarpy.kits.thrift.file.interface import Interface, enum_base, external
+from yarpy.kits.thrift.generate.code import Code, quoted, taken
 from yarpy.kits.thrift.word import ENUM, MODULES, SERVICE, TYPES, attribute
 
 #: constants of this name say which version of an interface it is

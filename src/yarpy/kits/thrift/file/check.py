@@ -10,7 +10,7 @@ from __future__ import annotations
 from collections.abc import Iterable
 from typing import Any
 
-from yarpy.kits.thrift.document import (
+from yarpy.kits.thrift.file.document import (
     ConstText,
     EnumText,
     FieldText,
@@ -20,7 +20,7 @@ from yarpy.kits.thrift.document import (
     TypedefText,
     TypeText,
 )
-from yarpy.kits.thrift.interface import Interface, enum_base, external
+from yarpy.kits.thrift.file.interface import Interface, enum_base, external
 from yarpy.kits.thrift.word import attribute
 from yarpy.limit import (
     THRIFT_BASES,

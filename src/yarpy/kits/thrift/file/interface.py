@@ -13,7 +13,7 @@ from typing import Final, TypeAlias
 
 from yarpy.errors import DecodeError
 from yarpy.kits.thrift import kind as kinds
-from yarpy.kits.thrift.document import (
+from yarpy.kits.thrift.file.document import (
     Declaration,
     Document,
     EnumText,

@@ -16,7 +16,7 @@ from inspect import cleandoc
 from typing import Any, Final
 
 from yarpy.errors import DecodeError, UnknownPlugin
-from yarpy.kits.thrift.document import (
+from yarpy.kits.thrift.file.document import (
     Annotations,
     ConstText,
     Document,

@@ -1,6 +1,6 @@
 """What a file says: values, compared as such."""
 
-from yarpy.kits.thrift.document import Document, FieldText, Name, Pairs, TypeText
+from yarpy.kits.thrift.file.document import Document, FieldText, Name, Pairs, TypeText
 
 
 def test_values_compare() -> None:

@@ -13,8 +13,8 @@ from support.wait import HANG
 
 import yarpy
 from yarpy.errors import DecodeError
-from yarpy.kits.thrift.include import read_interface, text_interface
-from yarpy.kits.thrift.typescript import runtime, typescript
+from yarpy.kits.thrift.file.include import read_interface, text_interface
+from yarpy.kits.thrift.generate.typescript import runtime, typescript
 
 SHARED = """
 enum Mode { AUTO, MANUAL = 7 }

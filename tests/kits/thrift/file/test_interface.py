@@ -3,11 +3,11 @@
 import pytest
 
 from yarpy.kits.thrift import kind as kinds
-from yarpy.kits.thrift.document import EnumText, StructText
-from yarpy.kits.thrift.include import text_interface
-from yarpy.kits.thrift.interface import enum_base, external
+from yarpy.kits.thrift.file.document import EnumText, StructText
+from yarpy.kits.thrift.file.include import text_interface
+from yarpy.kits.thrift.file.interface import enum_base, external
+from yarpy.kits.thrift.file.parse import parse
 from yarpy.kits.thrift.library import loads
-from yarpy.kits.thrift.parse import parse
 
 
 def test_types_behind_typedefs() -> None:

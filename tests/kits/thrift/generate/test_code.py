@@ -3,8 +3,8 @@
 import pytest
 
 from yarpy.errors import DecodeError
-from yarpy.kits.thrift.include import text_interface
-from yarpy.kits.thrift.module import python
+from yarpy.kits.thrift.file.include import text_interface
+from yarpy.kits.thrift.generate.module import python
 
 
 @pytest.mark.parametrize(

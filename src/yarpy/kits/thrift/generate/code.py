@@ -14,7 +14,7 @@ from typing import Any, Final
 
 from yarpy.errors import DecodeError
 from yarpy.kits.thrift import kind as kinds
-from yarpy.kits.thrift.document import (
+from yarpy.kits.thrift.file.document import (
     ConstText,
     EnumText,
     FieldText,
@@ -24,7 +24,7 @@ from yarpy.kits.thrift.document import (
     StructText,
     TypeText,
 )
-from yarpy.kits.thrift.interface import BASE, Interface, external
+from yarpy.kits.thrift.file.interface import BASE, Interface, external
 from yarpy.kits.thrift.kind import ARRAYS, BINARY, BOOL, DOUBLE, TEXT, External, Scalar, size_of
 from yarpy.kits.thrift.word import ENUM, ERROR, STRUCT, TYPES, attribute
 

@@ -16,7 +16,7 @@ from importlib.resources import files
 from typing import Any, Final
 
 from yarpy.kits.thrift import kind as kinds
-from yarpy.kits.thrift.document import (
+from yarpy.kits.thrift.file.document import (
     ConstText,
     EnumText,
     FieldText,
@@ -29,7 +29,7 @@ from yarpy.kits.thrift.document import (
     TypeText,
     numbered,
 )
-from yarpy.kits.thrift.interface import BASE, Interface, external
+from yarpy.kits.thrift.file.interface import BASE, Interface, external
 from yarpy.kits.thrift.kind import BINARY, BOOL, TEXT, VOCAB, Scalar
 
 #: the module that all others import, and what is imported as in all of them

@@ -3,7 +3,7 @@
 import pytest
 
 from yarpy.errors import DecodeError
-from yarpy.kits.thrift.include import text_interface
+from yarpy.kits.thrift.file.include import text_interface
 
 
 @pytest.mark.parametrize(

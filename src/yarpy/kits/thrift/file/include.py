@@ -10,9 +10,9 @@ from collections.abc import Callable, Iterable
 from pathlib import Path
 
 from yarpy.errors import DecodeError
-from yarpy.kits.thrift.check import checked
-from yarpy.kits.thrift.interface import Interface
-from yarpy.kits.thrift.parse import parse
+from yarpy.kits.thrift.file.check import checked
+from yarpy.kits.thrift.file.interface import Interface
+from yarpy.kits.thrift.file.parse import parse
 from yarpy.limit import (
     THRIFT_DECLARATIONS,
     THRIFT_INCLUDES,

@@ -6,7 +6,7 @@ import pytest
 from support.thrift import GOLDEN
 
 from yarpy.errors import DecodeError, UnknownPlugin
-from yarpy.kits.thrift.document import (
+from yarpy.kits.thrift.file.document import (
     ConstText,
     EnumText,
     Name,
@@ -15,7 +15,7 @@ from yarpy.kits.thrift.document import (
     StructText,
     TypedefText,
 )
-from yarpy.kits.thrift.parse import parse
+from yarpy.kits.thrift.file.parse import parse
 from yarpy.limit import THRIFT_TEXT
 
 TEXT = """\

@@ -1,0 +1,1 @@
+"""`.thrift` files: read, with those that they include, and checked."""

@@ -1,0 +1,1 @@
+"""Code for an interface: a module of Python, a module of TypeScript."""
