@@ -158,7 +158,7 @@ def test_the_linter_likes_it_and_types_are_right(tmp_path: Path) -> None:
         ("capt", read_interface(GOLDEN / "capt.thrift")),
     ):
         (tmp_path / f"{name}.py").write_text(python(interface))
-    config = str(Path(__file__).parents[3] / "pyproject.toml")
+    config = str(Path(__file__).parents[4] / "pyproject.toml")
     run = [sys.executable, "-m"]
     done = subprocess.run(
         [*run, "ruff", "format", "--diff", "--config", config, "."],
