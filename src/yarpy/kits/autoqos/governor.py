@@ -18,6 +18,7 @@ from typing import Final
 
 from yarpy.kits.autoqos import measures
 from yarpy.kits.autoqos.change import Change, Step
+from yarpy.kits.autoqos.history import FLOOD, LONGEST_REST, REST, History
 from yarpy.kits.autoqos.rules import Rule, Rules
 from yarpy.kits.autoqos.trend import Pair, Trend
 from yarpy.network.traffic import Snapshot
@@ -31,12 +32,9 @@ MESSAGES: Final = 50  # on which a connection is judged
 SLOWEST: Final = 20.0  # seconds for which these are awaited
 STARVING: Final = 1.5  # seconds, likewise
 ENOUGH: Final = 0.8  # of its minimum: less is starving
-REST: Final = 60.0  # seconds until what did not help is tried again; then twice that
-LONGEST_REST: Final = 3600.0
 CALM: Final = 15.0  # seconds without trouble before a limit grows
 GROW: Final = 1.5  # times a limit
 SPARE: Final = 1.5  # times its minimum: best effort that gets less keeps its packets' class
-FLOOD: Final = "flood"
 
 
 @dataclass(slots=True)
@@ -58,11 +56,9 @@ class Governor:
         self._rules = rules
         self._trusting = trusting
         self._trend = Trend()
-        self._made: dict[tuple[str, str, str], Change] = {}  # and is in force
+        self._history = History()
         self._trial: Trial | None = None
         self._pending: tuple[Rule, str, float | None] | None = None
-        self._rest: dict[tuple[int, str], float] = {}
-        self._strikes: dict[tuple[int, str], int] = {}
         self._told: set[object] = set()
         self._quiet_since = 0.0
         self._changed = 0.0  # when the last step was made
@@ -93,14 +89,7 @@ class Governor:
         """A step was made, but for those changes that failed, with the reasons."""
         made = [change for change in step.changes if change not in failed]
         for change in made:
-            first = self._made.get(change.what)
-            if first is not None and first.before == change.value:
-                del self._made[change.what]
-            else:
-                before = change.before if first is None else first.before
-                self._made[change.what] = Change(
-                    change.port, change.peer, change.key, change.value, before
-                )
+            self._history.add(change)
         self.steps += bool(made)
         self._told.update(("failed", change.what, change.value) for change in failed)
         pending, self._pending = self._pending, None
@@ -110,7 +99,7 @@ class Governor:
             return
         rule, measure, before = pending
         if not made:
-            self._strike(rule, measure, now)
+            self._history.failed(rule, measure, now)
         elif not self._trusting:
             span = self._span(self._groups.get(rule, []))
             self._trial = Trial(rule, measure, tuple(made), before, now, span)
@@ -174,7 +163,7 @@ class Governor:
         """The next measure for the critical rule that is worst off."""
         worst: tuple[float, Rule, list[Pair]] | None = None
         for rule, pairs in self._of("critical"):
-            if self._rest.get((rule.line, FLOOD), 0.0) > now:
+            if self._history.rests(rule, FLOOD, now):
                 continue  # it is late by its own doing
             missed = self._trend.missed(pairs, max(now - self._span(pairs), self._changed))
             if missed is None and not self._trend.counts(pairs) and self._crowded(snapshot):
@@ -192,9 +181,10 @@ class Governor:
             changes = tuple(
                 one
                 for one in changes
-                if ("failed", one.what, one.value) not in self._told and self._now(one) != one.value
+                if ("failed", one.what, one.value) not in self._told
+                and self._history.now(one) != one.value
             )
-            if changes and self._rest.get((rule.line, measure), 0.0) <= now:
+            if changes and not self._history.rests(rule, measure, now):
                 self._pending = rule, measure, None if blind else missed
                 trouble = "nobody counts deadlines of" if blind else f"{missed:.0%} late on"
                 return Step(f"{trouble} {_names(pairs)}: {words}", changes)
@@ -251,7 +241,7 @@ class Governor:
                 mbit = self._trend.mbit(pair, now - 2 * LOOK_AT)
                 if mbit is None:
                     continue
-                mbit = min(mbit, self._limit_of(pair) or mbit)
+                mbit = min(mbit, self._history.limit_of(pair) or mbit)
                 changes = self._limited(snapshot, pair, mbit, other.least)
                 for change in changes:
                     words = f"{_name(pair)} sends {change.value:g} Mbit/s instead of {mbit:.3g}"
@@ -263,20 +253,8 @@ class Governor:
         others = [flow for key, flow in snapshot.flows.items() if key[0] == pair[0] and key[1]]
         found = measures.limit(snapshot, snapshot.flows[pair], mbit, least, len(others) == 1)
         return tuple(
-            Change(one.port, one.peer, "limit", one.value, self._now(one)) for one in found
+            Change(one.port, one.peer, "limit", one.value, self._history.now(one)) for one in found
         )
-
-    def _now(self, change: Change) -> object:
-        """Return the value in force of the setting that a change is about."""
-        made = self._made.get(change.what)
-        return change.before if made is None else made.value
-
-    def _limit_of(self, pair: Pair) -> float | None:
-        for peer in pair:
-            made = self._made.get((pair[0], peer, "limit"))
-            if made is not None:
-                return float(made.value or 0) or None
-        return None
 
     # -- whether it helped ------------------------------------------------------------------------
 
@@ -294,24 +272,18 @@ class Governor:
         if missed is not None and (missed <= TOLERANCE or missed < HELPED * trial.before):
             if trial.measure == "relax":
                 return None
-            self._strikes.pop((trial.rule.line, trial.measure), None)
-            for key in [key for key in self._rest if key[0] == trial.rule.line and key[1] != FLOOD]:
-                del self._rest[key]  # together with this, what did not help may
+            self._history.helped(trial.rule, trial.measure)
             return Step(f"that helped: {trial.before:.0%} -> {missed:.0%} late on {_names(pairs)}")
         if missed is not None and trial.measure.startswith("limit") and self._can_shrink(trial):
             return None  # on the way: only at its minimum is it certain that it did not help
-        self._strike(trial.rule, trial.measure, now)
+        self._history.failed(trial.rule, trial.measure, now)
         told = "nothing comes" if missed is None else f"{missed:.0%} late"
         back = tuple(change.undone for change in reversed(trial.changes))
         if trial.measure == "relax":
             self._calm = min(2 * self._calm, LONGEST_REST)
             return Step(f"too early ({told}): the limit is as it was", back)
         if trial.measure.startswith("limit"):  # all of the way back
-            back = tuple(
-                Change(one.port, one.peer, one.key, self._made[one.what].before, one.value)
-                for one in trial.changes
-                if one.what in self._made
-            )
+            back = self._history.all_undone(trial.changes)
         return Step(f"that did not help ({told}): it is as it was", back)
 
     def _can_shrink(self, trial: Trial) -> bool:
@@ -320,12 +292,6 @@ class Governor:
         least = [rule.least for rule, all_ in self._of("best-effort") for pair in all_
                  if pair[0] == change.port]  # fmt: skip
         return bool(change.value > max([measures.FLOOR, *least]))
-
-    def _strike(self, rule: Rule, measure: str, now: float) -> None:
-        """It did not help, or is refused: not again for a while."""
-        key = rule.line, measure
-        strikes = self._strikes[key] = self._strikes.get(key, 0) + 1
-        self._rest[key] = now + min(REST * 2 ** min(strikes - 1, 10), LONGEST_REST)
 
     # -- nobody starves ---------------------------------------------------------------------------
 
@@ -339,7 +305,7 @@ class Governor:
                 mbit = self._trend.mbit(pair, since)
                 if not rule.least or mbit is None or mbit >= ENOUGH * rule.least:
                     continue
-                if self._limit_of(pair) is None and self._trend.wants_more(pair, since):
+                if self._history.limit_of(pair) is None and self._trend.wants_more(pair, since):
                     step = self._demoted(snapshot, rule, pair, mbit, now)
                     if step is not None:
                         return step
@@ -352,7 +318,7 @@ class Governor:
         why = f"{_name(pair)} gets {mbit:.2g} of its {rule.least:g} Mbit/s: "
         own = [
             change.undone
-            for change in measures.changes_of(self._made.values(), "packets", {pair})
+            for change in measures.changes_of(self._history.changes, "packets", {pair})
             if change.value == measures.LOW
         ]
         if own:
@@ -368,12 +334,14 @@ class Governor:
             flow = snapshot.flows[one]
             changes = measures.packets([flow], measures.NORMAL, False)
             if changes:
-                self._strike(critical, FLOOD, now)
+                self._history.failed(critical, FLOOD, now)
                 words = f"{_name(one)} floods ({speed:.3g} Mbit/s), its packets become NORM"
                 return Step(why + words, changes)
-            limited = self._limited(snapshot, one, min(speed, self._limit_of(one) or speed), 0.0)
+            limited = self._limited(
+                snapshot, one, min(speed, self._history.limit_of(one) or speed), 0.0
+            )
             if limited:
-                self._strike(critical, FLOOD, now)
+                self._history.failed(critical, FLOOD, now)
                 words = f"{_name(one)} sends {limited[0].value:g} Mbit/s instead of {speed:.3g}"
                 return Step(why + words, limited)
         return None
@@ -384,7 +352,7 @@ class Governor:
         """Limits grow again, the one that was made last first."""
         if now - max(self._quiet_since, self._changed) < self._calm:
             return None
-        for made in reversed(list(self._made.values())):
+        for made in reversed(self._history.changes):
             if made.key != "limit":
                 continue
             rule = next((rule for rule, _ in self._of("critical")), None)
