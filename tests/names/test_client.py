@@ -238,9 +238,18 @@ def test_a_server_that_hangs_up() -> None:
 def test_a_server_that_says_nothing() -> None:
     with Scripted(b"") as server, YarpNameClient("127.0.0.1", server.port, 0.2) as names:
         start = time.monotonic()
-        with pytest.raises(NoNameServer, match=r"within 0\.2 s"):
+        with pytest.raises(NoNameServer, match=r"within 0\.2 s.* stopped \(`fg`"):
             names.query("/x")
         assert lasted(start) < 4
+
+
+def test_a_server_that_went_while_it_was_asked() -> None:
+    with Scripted(b"") as server, YarpNameClient("127.0.0.1", server.port, 0.2) as names:
+        asked = names._open("lines")
+        server.__exit__(None, None, None)
+        asked.close()
+        with pytest.raises(NoNameServer, match="start one with `yarpy server`"):
+            names.query("/x")
 
 
 def test_the_last_moment_of_a_call_says_nothing_of_the_server() -> None:

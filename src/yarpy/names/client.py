@@ -364,7 +364,16 @@ class YarpNameClient:
                 return self._ordinary(name)
             why = f"was silent for {seconds:.2g} s: its computer is busy, or it is; try again"
             return NoNameServer(f"the name server at {self.address} is there, but {why}")
-        return self._nobody(f"did not answer within {seconds:.2g} s")
+        try:
+            connected(self.host, self.port, scope.left(WHO)).close()
+        except (OSError, YarpError):  # it has gone meanwhile
+            return self._nobody(f"did not answer within {seconds:.2g} s")
+        return NoNameServer(
+            f"what listens at {self.address} did not answer within {seconds:.2g} s, nor say who it "
+            "is: a name server that was stopped (`fg`, or kill -CONT, lets it go on) or that hangs "
+            "(end it, and start `yarpy server`), or another program (say where the server is with "
+            "YARPY_SERVER=HOST:PORT or `yarpy conf HOST PORT`)"
+        )
 
     def _ordinary(self, name: str = "") -> NoNameServer:
         return NoNameServer(

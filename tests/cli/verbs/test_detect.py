@@ -1,5 +1,6 @@
 """`yarpy detect`."""
 
+import socket
 from pathlib import Path
 
 import pytest
@@ -7,6 +8,8 @@ from support.multicast import needs_multicast
 from support.port import free_port
 from support.ros_graph import ros_graph
 
+import yarpy
+from yarpy.names import client
 from yarpy.names.discovery import Responder
 
 
@@ -15,6 +18,25 @@ def test_the_configured_server(cli, server):
     assert said.returncode == 0
     assert f"Checking for name server at ip 127.0.0.1 port {server.port}\n" in said.stdout
     assert f"== FOUND\n== /root is available at ip 127.0.0.1 port {server.port}\n" in said.stdout
+
+
+def test_what_listens_there_is_no_name_server_that_answers(here, names, monkeypatch):
+    """Such as one that was stopped: it takes connections all the same."""
+    monkeypatch.setattr(client.YarpNameClient.__init__, "__defaults__", (0.3,))  # seconds
+    monkeypatch.setattr("yarpy.names.client.WHO", 0.3)
+    monkeypatch.setattr("yarpy.names.discovery.search", lambda *_, **__: None)
+    with (
+        socket.create_server(("127.0.0.1", 0)) as stopped,
+        yarpy.BufferedPort("/detect/port", names=names) as port,
+    ):
+        for address, what in (
+            (f"127.0.0.1:{stopped.getsockname()[1]}", "a name server that was stopped (`fg`"),
+            (port.address, "is an ordinary port"),
+        ):
+            monkeypatch.setenv("YARPY_SERVER", address)
+            said = here("detect")
+            assert said.code == 1 and "FOUND" not in said.out
+            assert f"what listens at {address} " in said.err and what in said.err
 
 
 @pytest.fixture

@@ -16,7 +16,7 @@ import click
 
 from yarpy.cli.output import print_line
 from yarpy.cli.stderr import complain, warn
-from yarpy.cli.verbs.where import framed
+from yarpy.cli.verbs.where import framed, serves
 from yarpy.registry import names
 
 TRIES = 3
@@ -40,7 +40,7 @@ def command(write: bool, **others: bool) -> int:
     for server in found.servers[:1]:
         print_line(f"Checking for name server at ip {server.host} port {server.port}")
         print_line("If there is a long delay, try:\n  yarpy conf --clean\n")
-        if client_of(server).alive():
+        if serves(client_of(server)):
             print_line(framed("FOUND", _place(server.namespace, server.host, server.port)))
             return 0
     contact = None

@@ -61,7 +61,7 @@ def command(as_json: bool) -> int:
         if not as_json:
             print_line(f"Looking for name server on {server.host}, port number {server.port}")
             print_line("If there is a long delay, try:\n  yarpy conf --clean")
-        alive = _serves(client_of(server))
+        alive = serves(client_of(server))
         code = 0 if alive else code
         if as_json:
             print_json(
@@ -110,7 +110,7 @@ def _tell(names: Foreign, server: Server, as_json: bool) -> bool:
     return alive
 
 
-def _serves(client: YarpNameClient) -> bool:
+def serves(client: YarpNameClient) -> bool:
     """Return whether a name server answers there; print what else does."""
     if not client.alive():
         return False
