@@ -105,6 +105,24 @@ def test_unknown_verb(cli):
     assert said.stderr == 'error: no command "raed": did you mean "read"? `yarpy help` lists them\n'
 
 
+@pytest.mark.parametrize(
+    ("line", "known", "example"),
+    [
+        ("idl camera.thrift", "rosmsg, sniff and thrift", "yarpy idl thrift camera.thrift"),
+        ("qos /a /b", "describe, get, set and time", "yarpy qos get /talker /listener"),
+        ("sched /a", "describe, get and set", "yarpy sched set /talker /listener"),
+        ("admin /a", "rpc and write", "yarpy admin rpc /listener"),
+        ("qos gte /a /b", 'did you mean "get"? there are', "yarpy qos get"),
+    ],
+)
+def test_verbs_with_commands_of_their_own_name_them(cli, line, known, example):
+    said = cli.run(*line.split())
+    assert said.returncode == 1
+    word = line.split()[1]
+    assert said.stderr.startswith(f'error: no command "{word}" of yarpy {line.split()[0]}: ')
+    assert known in said.stderr and f"Example: {example}" in said.stderr
+
+
 def test_wrong_use_is_told_with_the_right_one(here):
     said = here("exists")
     assert (said.code, said.out) == (1, "")

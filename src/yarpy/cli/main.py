@@ -89,11 +89,32 @@ def find_verb(name: str) -> click.Command | None:
 
 
 def _advice(name: str, known: Sequence[str]) -> str:
+    return f'no command "{name}": {_near(name, known)}`yarpy help` lists them'
+
+
+def _near(name: str, known: Sequence[str]) -> str:
     from difflib import get_close_matches
 
     near = get_close_matches(name, known, n=1)
-    hint = f'did you mean "{near[0]}"? ' if near else ""
-    return f'no command "{name}": {hint}`yarpy help` lists them'
+    return f'did you mean "{near[0]}"? ' if near else ""
+
+
+_UNKNOWN = re.compile(r"No such command '(.*?)'\.", re.DOTALL)
+
+
+def _told(error: click.UsageError) -> str:
+    """Return what is wrong with a line; of a verb with commands of its own also which there are,
+    since a port or a file in their place is what people try first."""
+    text = error.format_message()
+    ctx = error.ctx
+    found = _UNKNOWN.match(text)
+    if found is None or ctx is None or not isinstance(ctx.command, click.Group):
+        return _plain(text)
+    known = ctx.command.list_commands(ctx)
+    have = f"{', '.join(known[:-1])} and {known[-1]}" if known[1:] else "".join(known) or "none"
+    hint = _near(found[1], known)
+    example = f". {ctx.command.epilog}" if ctx.command.epilog else ""
+    return f'no command "{found[1]}" of {ctx.command_path}: {hint}there are {have}{example}'
 
 
 @click.group(
@@ -138,7 +159,7 @@ def run(arguments: Sequence[str]) -> int:
         click.echo(error.format_message(), err=True)
         return 1
     except click.UsageError as error:
-        complain(_plain(error.format_message()))
+        complain(_told(error))
         if error.ctx is not None and error.exit_code != NO_SUCH_VERB:
             click.echo(error.ctx.get_usage(), err=True)
         return NO_SUCH_VERB if error.exit_code == NO_SUCH_VERB else 1
