@@ -70,6 +70,17 @@ def read(end: End, carrier: Carrier, data: bytes) -> Message:
     return message
 
 
+def test_a_client_without_a_name_is_given_one() -> None:
+    nameless = mqtt.packet(mqtt.CONNECT, mqtt.string(b"MQTT") + b"\5\2\0\0\0" + mqtt.string(b""))
+    names = set()
+    for _ in range(2):
+        end, _ = accepted(nameless)
+        said = mqtt.Body(end.take()[2:])
+        assert said.number(2) == 0
+        names.add(bytes(said.properties()[0x12]))
+    assert len(names) == 2 and all(name.startswith(b"yarpy-") for name in names)
+
+
 @pytest.mark.parametrize("piece", [0, 1])
 def test_clients_are_welcomed(piece: int) -> None:
     end, carrier = accepted(HELLO3, piece=piece)

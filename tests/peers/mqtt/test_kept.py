@@ -9,7 +9,8 @@ from support.wait import HANG, wait_until
 
 import yarpy
 from yarpy.errors import LocalProtocolError, RemoteProtocolError
-from yarpy.peers.mqtt.broker import Subscriber, check
+from yarpy.peers.mqtt.broker import Subscriber
+from yarpy.peers.mqtt.hello import check
 from yarpy.route import Route, parse_carrier
 from yarpy.testing import End
 

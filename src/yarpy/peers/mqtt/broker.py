@@ -1,10 +1,9 @@
 """A port as a client of MQTT's brokers: it publishes, subscribes, and asks.
 
-Rules: version 3.1.1, which every broker understands; 5 for questions and sessions, and with `+v5`.
-Sessions are clean, unless `+session.SECONDS` says for how long the broker keeps what comes while
-the port is away: then the port has the same name there each time. The broker is promised a sign of
-life within KEEP_ALIVE, or what it wishes instead; the port sends it (`ping`). `+ws` comes in the
-frames of a WebSocket.
+Rules: `hello` says what a broker is asked for. It is promised a sign of life within KEEP_ALIVE, or
+what it wishes instead; the port sends it (`ping`). `+ws` comes in the frames of a WebSocket. A
+message that a broker of version 5 acknowledges with a reason not to pass it on is counted as lost,
+and the log says why.
 """
 
 from __future__ import annotations
@@ -13,29 +12,29 @@ import os
 from collections import deque
 from dataclasses import replace
 from typing import Final
-from zlib import crc32
 
-from yarpy.carriers.base import Limits, refuse_unknown
+from yarpy.carriers.base import Limits
 from yarpy.carriers.payload import message_of, to_payload
 from yarpy.carriers.web.upgrade import ask_for_websocket
 from yarpy.data import codec
 from yarpy.data.value import Vocab
 from yarpy.errors import LocalProtocolError, LoginRefused, RemoteProtocolError
 from yarpy.limit import MQTT_CONNECT, MQTT_HEARD, MQTT_TOPIC
-from yarpy.log import readable
+from yarpy.log import logger, readable
 from yarpy.peers.mqtt import packet as mqtt
-from yarpy.peers.mqtt.session import BROKER, CLEAN, HANDLING, RPC, SESSION, WILL, MqttPeer
-from yarpy.route import CarrierSpec, Route
+from yarpy.peers.mqtt.hello import KEEP_ALIVE, WEBSOCKET, hello, one_topic, qos_of, seconds_of
+from yarpy.peers.mqtt.session import BROKER, DELAY, EXPIRY, HANDLING, MqttPeer
+from yarpy.route import Route
 from yarpy.wire.effects import Switch
 from yarpy.wire.frame_stream import BINARY, FrameStream, frame
 from yarpy.wire.message import CALL, SMALL, Message, Packet
 from yarpy.wire.steps import Steps
 from yarpy.wire.stream import Buffer, ByteStream
 
+log = logger("yarpy.link")
+
 MOST_IN_FLIGHT: Final = 20  # messages with QoS 2 under way; of more, mosquitto loses some
-FOREVER: Final = 0xFFFFFFFF  # seconds of a session that never expires
-KEEP_ALIVE: Final = 60  # seconds of silence that we promise not to exceed
-WEBSOCKET: Final = "ws"
+_NUMBERS: Final = 2 * MOST_IN_FLIGHT  # of messages in a session that the broker keeps
 _REFUSALS: Final = {
     1: "it does not speak version 3.1.1: say +v5",
     2: "it does not like the client's name",
@@ -46,13 +45,15 @@ _REFUSALS: Final = {
     0x86: "the name or the password is wrong: say +user.NAME+password.WORD",
     0x87: "it does not admit us: say +user.NAME+password.WORD",
 }
-_WORDS: Final = (
-    *("sub", RPC, "session.SECONDS", "qos.1", "qos.2", "retain", "will.TEXT", "retain_handling.N"),
-    *("user.NAME", "password.WORD", "v5", "raw", "ws", "ws.PATH"),
-)
 _LOGIN: Final = frozenset((4, 5, 0x86, 0x87))
 
 
+_NOT_PASSED_ON: Final = {
+    0x87: "it does not allow us to write to this topic",
+    0x90: "it does not like the topic",
+    0x97: "it has no room for more",
+    0x99: "the payload is not in the form that it wants",
+}
 _ENDS: Final = {
     0x00: "it says goodbye",
     0x87: "it does not admit us any more",
@@ -63,34 +64,6 @@ _ENDS: Final = {
     0x95: "a message was too large for it",
     0x97: "it got more than we are allowed to send",
 }
-
-
-def check(spec: CarrierSpec) -> None:
-    """Raise LocalProtocolError for what no broker can be asked for."""
-    refuse_unknown(spec, _WORDS)
-    qos = spec.value("qos")
-    if qos not in (None, "0", "1", "2"):
-        raise LocalProtocolError(f"+qos.{qos[:20]}: there are QoS 0, 1 and 2")
-    if spec.value("will") is not None and {"sub", RPC} & {*spec.tokens}:
-        raise LocalProtocolError("+will.TEXT is for ports that write to a topic of a broker")
-    handling = spec.value(HANDLING) or "0"
-    if handling not in ("0", "1", "2") or (handling != "0" and "sub" not in spec.tokens):
-        raise LocalProtocolError("+retain_handling.N is for ports that read: N is 0, 1 or 2")
-    _check_session(spec)
-    if spec.value("password") is not None and spec.value("user") is None:
-        raise LocalProtocolError("a password for a broker needs a name: say +user.NAME")
-
-
-def _check_session(spec: CarrierSpec) -> None:
-    seconds = spec.value(SESSION)
-    if seconds is None:
-        return
-    if "sub" not in spec.tokens or RPC in spec.tokens:
-        raise LocalProtocolError("+session.SECONDS is for ports that read from topics of a broker")
-    if not (seconds.isascii() and seconds.isdecimal() and 0 < int(seconds[:20]) <= FOREVER):
-        raise LocalProtocolError(f"+session.{seconds[:20]}: say seconds, {FOREVER} for no end")
-    if spec.value("qos") not in ("1", "2"):
-        raise LocalProtocolError("a broker keeps what has a QoS: say +qos.1 beside +session")
 
 
 class Client(MqttPeer):
@@ -117,7 +90,7 @@ class Client(MqttPeer):
 
     def _connect(self, stream: ByteStream) -> Steps[bool]:
         """Become a client of the broker; return whether it knows us from before."""
-        stream.write(self._hello())
+        stream.write(hello(self))
         first, body = yield from mqtt.read_packet(stream, MQTT_CONNECT)
         if first != mqtt.CONNACK or len(body) < 2:
             raise RemoteProtocolError("what was dialled is no broker of MQTT")
@@ -134,9 +107,18 @@ class Client(MqttPeer):
                 self.ping = self.ping[0], int.from_bytes(wish, "big") / 2
             if (most := wishes.get(mqtt.RECEIVE_MAXIMUM)) is not None:
                 ahead = min(ahead, max(1, int.from_bytes(most, "big")))
+            self._agree(wishes)
             self.most = int.from_bytes(wishes.get(mqtt.MOST_BYTES, b""), "big")
         self.limits = replace(self.limits, ahead=ahead)
         return bool(body[0] & 1)
+
+    def _agree(self, wishes: dict[int, bytes]) -> None:
+        """Raise RemoteProtocolError if the broker does not do what it is to be asked for."""
+        most = wishes.get(mqtt.MOST_QOS, b"\2")[0]
+        if self.push and self.qos > most:
+            raise RemoteProtocolError(f"the broker knows QoS 0 to {most} alone: say +qos.{most}")
+        if "retain" in self.route.spec.tokens and wishes.get(mqtt.RETAIN_AVAILABLE) == b"\0":
+            raise RemoteProtocolError("the broker retains nothing: leave +retain out")
 
     def left(self, body: Buffer) -> Message:
         reason = bytes(body[:1])
@@ -161,7 +143,7 @@ class Client(MqttPeer):
 
     def _subscribe(self, stream: ByteStream, topic: bytes, options: int) -> None:
         """Subscribe, at a broker. `options`: the QoS, and what else MQTT has there."""
-        body = b"\0\1" + self._properties() + mqtt.string(topic) + bytes((options,))
+        body = b"\0\1" + self.properties() + mqtt.string(topic) + bytes((options,))
         stream.write(mqtt.packet(mqtt.SUBSCRIBE | 2, body))
 
     def _subscribed(self, topic: bytes, first: int, body: Buffer) -> None:
@@ -172,55 +154,10 @@ class Client(MqttPeer):
             shown = readable(topic[:80].decode("utf-8", "replace"))
             raise RemoteProtocolError(f"the broker refuses the subscription to {shown}")
 
-    def _one_topic(self) -> bytes:
-        """The topic, where it has to be a single one."""
-        topic = self.topic
-        if not topic or b"#" in topic or b"+" in topic or len(topic) > MQTT_TOPIC:
-            raise LocalProtocolError(
-                "a port writes to one topic, which stands behind the broker: mqtt://HOST/TOPIC"
-            )
-        return topic
-
-    def _hello(self) -> bytes:
-        from urllib.parse import unquote_to_bytes
-
-        route = self.route
-        seconds = route.spec.value(SESSION)
-        mark = os.urandom(4).hex() if seconds is None else f"{crc32(self.topic):08x}"
-        client = f"yarpy{route.source.replace('/', '-')}-{mark}"
-        words = [route.spec.value(key) for key in ("user", "password")]
-        user, password = (
-            None if word is None else unquote_to_bytes(word.encode("utf-8", "surrogateescape"))
-            for word in words
-        )
-        flags = (
-            (CLEAN if seconds is None else 0)
-            | (0x80 if user is not None else 0)
-            | (0x40 if password is not None else 0)
-        )
-        will: tuple[bytes, ...] = ()
-        if (text := route.spec.value("will")) is not None:
-            will = self._one_topic(), unquote_to_bytes(text.encode("utf-8", "surrogateescape"))
-            flags |= WILL | (self.qos << 3) | (0x20 if "retain" in route.spec.tokens else 0)
-        body = mqtt.string(b"MQTT") + bytes((self.version, flags))
-        kept = (
-            b""
-            if seconds is None
-            else bytes((mqtt.SESSION_EXPIRY,)) + int(seconds).to_bytes(4, "big")
-        )
-        body += KEEP_ALIVE.to_bytes(2, "big") + self._properties(kept)
-        body += mqtt.string(client.encode("utf-8", "replace")[:1000])
-        if will:
-            body += self._properties() + b"".join(map(mqtt.string, will))
-        for part in (user, password):
-            if part is not None:
-                body += mqtt.string(part)
-        return mqtt.packet(mqtt.CONNECT, body)
-
     @property
     def qos(self) -> int:
         """The quality of service that the carrier string names: 0, 1 or 2."""
-        return int(self.route.spec.value("qos") or 0)
+        return qos_of(self.route.spec)
 
     def encode_quit(self, stream: ByteStream) -> None:
         stream.write(mqtt.packet(mqtt.DISCONNECT))
@@ -238,16 +175,33 @@ class Publisher(Client):
         self._number = 0
         self._small = False
         self._open = deque[int]()  # numbers that were not acknowledged
+        self._refused = set[int]()  # of those the ones that the broker did not take
+        self._reasons = set[int]()  # that the log has told
         self._over = False
         self.acks = False
+        self._kept = route.spec.value(DELAY) is not None  # the broker keeps a session for us
+        self._expiry = seconds_of(mqtt.MESSAGE_EXPIRY, route.spec.value(EXPIRY))
+        self._numbers = _NUMBERS if self._kept and self.qos == 2 else 65535
 
     def greet(self, stream: ByteStream) -> Steps[None]:
         self.acks = bool(self.qos)
-        self._head = mqtt.string(self._one_topic())
+        self._head = mqtt.string(one_topic(self))
         stream = yield from self._enter(stream)
         retain = mqtt.RETAIN if "retain" in self.route.spec.tokens else 0
         self._first = mqtt.PUBLISH | (self.qos << 1) | retain
-        yield from self._connect(stream)
+        known = yield from self._connect(stream)
+        if known and self.qos == 2:
+            yield from self._release(stream)
+
+    def _release(self, stream: ByteStream) -> Steps[None]:
+        """Let go of the numbers of messages that the last connection had under way: the broker
+        would take new messages with them for the same once more."""
+        for number in range(1, _NUMBERS + 1):
+            stream.write(mqtt.packet(mqtt.PUBREL | 2, number.to_bytes(2, "big")))
+        for _ in range(_NUMBERS):
+            first, _ = yield from mqtt.read_packet(stream, MQTT_HEARD)
+            if first & 0xF0 != mqtt.PUBCOMP:
+                raise RemoteProtocolError("the broker does not let go of messages of before")
 
     def gathers(self, packet: Packet) -> bool:
         return self._small
@@ -260,10 +214,10 @@ class Publisher(Client):
             payload = to_payload(packet)
         head = self._head
         if self.acks:
-            self._number = self._number % 65535 + 1
+            self._number = self._number % self._numbers + 1
             self._open.append(self._number)
             head += self._number.to_bytes(2, "big")
-        head += self._said_beside(packet)
+        head += self._said_beside(packet, self._expiry)
         pieces = mqtt.publish(head, payload, self._first)
         if not self.acks and 0 < self.most < sum(map(len, pieces)):
             self.lost += 1
@@ -272,13 +226,23 @@ class Publisher(Client):
         stream.write(*pieces)
 
     def encode_quit(self, stream: ByteStream) -> None:
-        super().encode_quit(stream)
+        if self._kept:  # a goodbye that ends the session, too
+            end = bytes((mqtt.SESSION_EXPIRY, 0, 0, 0, 0))
+            stream.write(mqtt.packet(mqtt.DISCONNECT, b"\0" + self.properties(end)))
+        else:
+            super().encode_quit(stream)
         self._over = True
 
     def expect_ack(self, stream: ByteStream) -> Steps[None]:
         while self._open:
+            if self._open[0] in self._refused:
+                self._refused.discard(self._open.popleft())
+                return
             first, body = yield from mqtt.read_packet(stream, MQTT_HEARD)
             kind = first & 0xF0
+            if kind in (mqtt.PUBACK, mqtt.PUBREC) and self._is_refusal(body):
+                self._refused.add(mqtt.Body(body).number(2))
+                continue
             if kind == mqtt.PUBREC:  # the broker has it, and forgets its number once we say so
                 stream.write(mqtt.packet(mqtt.PUBREL | 2, bytes(body[:2])))
                 continue
@@ -290,6 +254,18 @@ class Publisher(Client):
             return
         if not self._over:
             raise RemoteProtocolError("the broker acknowledges what was not sent")
+
+    def _is_refusal(self, body: Buffer) -> bool:
+        """Return whether an acknowledgement says that the message goes nowhere; it is lost then."""
+        if self.version != mqtt.V5 or len(body) < 3 or body[2] < mqtt.REFUSED:
+            return False
+        reason = body[2]
+        self.lost += 1
+        if reason not in self._reasons:
+            self._reasons.add(reason)
+            why = _NOT_PASSED_ON.get(reason, f"for reason {reason:#04x}")
+            log.warning("%s: the broker does not pass on what it gets: %s", self.route.source, why)
+        return True
 
 
 class Subscriber(Client):
@@ -339,7 +315,7 @@ class Asker(Client):
         self._number = 0  # of the last question
 
     def greet(self, stream: ByteStream) -> Steps[None]:
-        self._topic = self._one_topic()
+        self._topic = one_topic(self)
         stream = yield from self._enter(stream)
         yield from self._connect(stream)
         self._subscribe(stream, self._answers, 1)  # answered before any question is

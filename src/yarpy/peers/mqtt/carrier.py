@@ -31,7 +31,8 @@ from yarpy.limit import (
     MQTT_WILL,
 )
 from yarpy.peers.mqtt import packet as mqtt
-from yarpy.peers.mqtt.broker import Asker, Publisher, Subscriber, check
+from yarpy.peers.mqtt.broker import Asker, Publisher, Subscriber
+from yarpy.peers.mqtt.hello import check
 from yarpy.peers.mqtt.session import CLEAN, RPC, WILL, MqttPeer
 from yarpy.route import CarrierSpec, Route
 from yarpy.wire.effects import May
@@ -129,7 +130,7 @@ class Mqtt(MqttPeer):
         return super().left(body)
 
     def _connack(self, reason: int, properties: bytes = b"") -> bytes:
-        return mqtt.packet(mqtt.CONNACK, bytes((0, reason)) + self._properties(properties))
+        return mqtt.packet(mqtt.CONNACK, bytes((0, reason)) + self.properties(properties))
 
     def heard(self, stream: ByteStream, first: int, body: Buffer) -> Steps[Message | None]:
         kind = first & 0xF0
@@ -143,7 +144,7 @@ class Mqtt(MqttPeer):
             number = said.take(2)
             if self.version == mqtt.V5:
                 said.properties()
-            answer = number + self._properties()
+            answer = number + self.properties()
             while said:
                 said.string()
                 answer += b"\0" if self.version == mqtt.V5 else b""
@@ -191,7 +192,7 @@ class Reader(MqttPeer):
             if len(self._wanted) > MQTT_PATTERNS:
                 raise RemoteProtocolError(f"more than {MQTT_PATTERNS} subscriptions")
         self._number()
-        stream.write(mqtt.packet(mqtt.SUBACK, number + self._properties() + granted))
+        stream.write(mqtt.packet(mqtt.SUBACK, number + self.properties() + granted))
         return bool(self._wanted)
 
     def _number(self) -> None:
@@ -241,7 +242,7 @@ class Reader(MqttPeer):
         answer = said.take(2)
         if self.version == mqtt.V5:
             said.properties()
-        answer += self._properties()
+        answer += self.properties()
         while said:
             self._wanted.pop(said.string().decode("utf-8", "replace"), None)
             answer += b"\0" if self.version == mqtt.V5 else b""

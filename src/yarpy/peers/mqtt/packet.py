@@ -40,17 +40,24 @@ NO_MATCHING_SUBSCRIBERS: Final = 0x10  # the reason in a PUBACK: nobody has subs
 
 NO_SHARING: Final = 0x9E  # the reason in a SUBACK: there are no shared subscriptions
 
+NOT_FOUND: Final = 0x92  # the reason in a PUBCOMP: no message has that number
+
+REFUSED: Final = 0x80  # a reason from here on says that something was not done
+
 NO_METHOD: Final = 0x8C  # the reason in a CONNACK: there are no logins of that kind
 
 WITH_WILL: Final = 0x04  # the reason in a DISCONNECT: the will is to be published all the same
 
+MESSAGE_EXPIRY: Final = 0x02  # of a message, in seconds
 RESPONSE_TOPIC: Final = 0x08
 CORRELATION_DATA: Final = 0x09
 SUBSCRIPTION: Final = 0x0B  # the number of a subscription, which its messages have
 SESSION_EXPIRY: Final = 0x11  # of a session, in seconds
 SERVER_KEEP_ALIVE: Final = 0x13
+WILL_DELAY: Final = 0x18  # of a will, in seconds
 METHOD: Final = 0x15  # of a login in several steps
 RECEIVE_MAXIMUM: Final = 0x21
+MOST_QOS: Final = 0x24
 RETAIN_AVAILABLE: Final = 0x25
 MOST_BYTES: Final = 0x27  # of a packet that the peer takes
 SHARING_AVAILABLE: Final = 0x2A

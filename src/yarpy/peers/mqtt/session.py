@@ -25,6 +25,8 @@ from yarpy.wire.stream import Buffer, ByteStream
 
 RPC: Final = "rpc"
 SESSION: Final = "session"
+DELAY: Final = "will_delay"
+EXPIRY: Final = "expiry"
 HANDLING: Final = "retain_handling"
 CLEAN: Final = 0x02
 WILL: Final = 0x04
@@ -43,7 +45,9 @@ class MqttPeer(Carrier):
     def __init__(self, route: Route) -> None:
         super().__init__(route)
         tokens = route.spec.tokens
-        newer = {RPC, "v5"} & {*tokens} or any(map(route.spec.value, (SESSION, HANDLING)))
+        newer = {RPC, "v5"} & {*tokens} or any(
+            map(route.spec.value, (SESSION, HANDLING, DELAY, EXPIRY))
+        )
         self.version = mqtt.V5 if newer else mqtt.V3
         self.raw = "raw" in tokens
         self._owed: deque[tuple[int, int]] = deque()  # for each message its QoS and number
@@ -65,9 +69,10 @@ class MqttPeer(Carrier):
         """Return the properties of a message, its envelope among them."""
         if packet.envelope and self.version == mqtt.V5:
             data += user.properties_of(packet.envelope)
-        return self._properties(data)
+        return self.properties(data)
 
-    def _properties(self, data: bytes = b"") -> bytes:
+    def properties(self, data: bytes = b"") -> bytes:
+        """Return properties behind their length; version 3.1.1 has none."""
         return mqtt.varint(len(data)) + data if self.version == mqtt.V5 else b""
 
     def decode(self, stream: ByteStream) -> Steps[Message]:
@@ -172,6 +177,6 @@ class MqttPeer(Carrier):
         properties = b""
         if correlation is not None:
             properties = bytes((mqtt.CORRELATION_DATA,)) + mqtt.string(correlation)
-        head = mqtt.string(topic) + self._properties(properties)
+        head = mqtt.string(topic) + self.properties(properties)
         payload = b"".join(codec.encode(value)) if self.raw else payload_of(value)
         stream.write(*mqtt.publish(head, payload))
