@@ -40,7 +40,7 @@ from yarpy.carriers.base import Carrier
 from yarpy.carriers.own.memory import Memory
 from yarpy.carriers.payload import message_of, payload_of
 from yarpy.data import codec, yarp4
-from yarpy.data.sig import jpeg
+from yarpy.data.sig import jpeg, png
 from yarpy.data.sig.image import Image
 from yarpy.errors import DecodeError, YarpError
 from yarpy.kits.devices.control_board.state import State
@@ -66,15 +66,14 @@ from yarpy.limit import SCRIPT_SECONDS
 from yarpy.link.begin.handshake import find_carrier, recognise
 from yarpy.monitors.base import Place
 from yarpy.monitors.chain import Chain
-from yarpy.monitors.stock import png
 from yarpy.monitors.stock.zlib_limit import unpacked
 from yarpy.names.discovery import respond
 from yarpy.peers.mqtt.carrier import Mqtt, Reader
 from yarpy.peers.ros.bag.reader import BagReader
 from yarpy.peers.ros.bag.writer import BagWriter
 from yarpy.peers.ros.header import LENGTH, encode_header
+from yarpy.peers.ros.message.convert.native import to_value
 from yarpy.peers.ros.message.library import Library
-from yarpy.peers.ros.message.native import to_value
 from yarpy.peers.ros.message.sniff import sniff
 from yarpy.peers.ros.message.source import Standard
 from yarpy.peers.ros2.message.description import type_of

@@ -16,7 +16,7 @@ from support.cpp_program import CppProgram
 from support.wait import HANG, wait_until
 
 import yarpy
-from yarpy.monitors.stock import demosaic
+from yarpy.monitors.imaging import demosaic
 
 ZLIB = "bottle_compression_zlib"
 

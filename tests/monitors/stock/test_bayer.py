@@ -13,9 +13,9 @@ from support.wait import HANG
 import yarpy
 from yarpy import Image, LocalProtocolError
 from yarpy.errors import DecodeError
-from yarpy.monitors.stock import demosaic
+from yarpy.monitors.imaging import demosaic
+from yarpy.monitors.imaging.homogeneity import ahd
 from yarpy.monitors.stock.bayer import Bayer
-from yarpy.monitors.stock.homogeneity import ahd
 
 try:
     import cv2

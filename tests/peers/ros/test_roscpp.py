@@ -14,8 +14,8 @@ from support.wait import HANG, wait_until
 import yarpy
 from yarpy.peers.ros.bag.reader import BagReader
 from yarpy.peers.ros.bag.writer import BagWriter
+from yarpy.peers.ros.message.convert.native import to_value
 from yarpy.peers.ros.message.library import Library
-from yarpy.peers.ros.message.native import to_value
 from yarpy.peers.ros.message.source import Texts
 from yarpy.peers.ros.node.node import Node
 

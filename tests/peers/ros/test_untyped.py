@@ -9,7 +9,7 @@ from support.wait import wait_until
 import yarpy
 from yarpy.names.node_name import NodeName
 from yarpy.peers.ros.membership import Membership
-from yarpy.peers.ros.message.native import natural_type
+from yarpy.peers.ros.message.convert.native import natural_type
 
 
 def type_of(graph: RosGraph, topic: str) -> str:

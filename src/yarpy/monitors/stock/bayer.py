@@ -23,12 +23,12 @@ from yarpy.data.sig.image import Image
 from yarpy.errors import DecodeError, LocalProtocolError
 from yarpy.monitors.base import Place
 from yarpy.monitors.extra import needed
-from yarpy.monitors.stock import demosaic
-from yarpy.monitors.stock.homogeneity import ahd
+from yarpy.monitors.imaging import demosaic
+from yarpy.monitors.imaging.homogeneity import ahd
 from yarpy.wire.message import Message
 
 if TYPE_CHECKING:
-    from yarpy.monitors.stock.demosaic import Colour, Grey
+    from yarpy.monitors.imaging.demosaic import Colour, Grey
 
 _ORDERS = ("grbg", "gbrg", "rggb", "bggr")
 # OpenCV's name for the method, and the width of the frame that C++ YARP leaves black

@@ -17,7 +17,7 @@ from yarpy.data.sig.image import QUANTUM, Image
 from yarpy.errors import DecodeError
 from yarpy.limit import limits
 from yarpy.monitors.base import Place
-from yarpy.monitors.stock.picture import picture
+from yarpy.monitors.imaging.picture import picture
 from yarpy.monitors.stock.zlib_limit import unpacked
 from yarpy.wire.message import Message
 

@@ -8,8 +8,8 @@ from __future__ import annotations
 
 from yarpy.data.sig.image import Image
 from yarpy.monitors.base import Place
+from yarpy.monitors.imaging.picture import picture
 from yarpy.monitors.stock.depthimage_to_mono import FARTHEST, NEAREST
-from yarpy.monitors.stock.picture import picture
 from yarpy.wire.message import Message
 
 _KNOTS = ((0, 0, 1), (0, 1, 0), (1, 1, 0), (1, 0, 0), (0, 0, 0))

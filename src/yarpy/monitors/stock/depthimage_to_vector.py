@@ -7,7 +7,7 @@ from __future__ import annotations
 
 from yarpy.data.sig.vector import Vector
 from yarpy.monitors.base import Place
-from yarpy.monitors.stock.picture import picture
+from yarpy.monitors.imaging.picture import picture
 from yarpy.wire.message import Message
 
 

@@ -15,7 +15,7 @@ from yarpy.data.sig.image import Image
 from yarpy.data.value import Vocab
 from yarpy.errors import DecodeError
 from yarpy.monitors.base import Place
-from yarpy.monitors.stock.picture import picture
+from yarpy.monitors.imaging.picture import picture
 from yarpy.wire.message import Message
 
 _CODES = ("mono", "rgb", "rgba", "bgr", "bgra")

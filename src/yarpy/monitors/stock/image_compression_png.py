@@ -9,12 +9,12 @@ Rules: needs OpenCV (extra `vision`), which releases the GIL.
 from __future__ import annotations
 
 from yarpy.data.bottle import Bottle
+from yarpy.data.sig import png
 from yarpy.data.value import Vocab
 from yarpy.errors import DecodeError
 from yarpy.monitors.base import Place
 from yarpy.monitors.extra import needed
-from yarpy.monitors.stock import png
-from yarpy.monitors.stock.picture import picture
+from yarpy.monitors.imaging.picture import picture
 from yarpy.wire.message import Message
 
 

@@ -13,7 +13,7 @@ from __future__ import annotations
 from yarpy.data.sig.image import Image
 from yarpy.errors import LocalProtocolError
 from yarpy.monitors.base import Place
-from yarpy.monitors.stock.picture import picture
+from yarpy.monitors.imaging.picture import picture
 from yarpy.wire.message import Message
 
 _TURNS = {"rotate_cw": -1, "rotate_ccw": 1, "rotate_180": 2, "rotate_none": 0}

@@ -53,7 +53,7 @@ class RosMessage(Message):
 
     def natural(self) -> Any:
         """An Image, a list of the fields, or the only field, as of any other message."""
-        from yarpy.peers.ros.message.native import to_value
+        from yarpy.peers.ros.message.convert.native import to_value
 
         names, ros = self.kind._names, self.ros
         if len(names) == 1 and type(text := getattr(ros, names[0])) is str:
@@ -63,13 +63,13 @@ class RosMessage(Message):
         return found[0] if alone else found
 
     def to_bytes(self) -> Buffer:
-        from yarpy.peers.ros.message.native import to_value
+        from yarpy.peers.ros.message.convert.native import to_value
 
         return b"".join(codec.encode(to_value(self.ros)))
 
     def as_(self, type_: Any) -> Any:
+        from yarpy.peers.ros.message.convert.native import to_value
         from yarpy.peers.ros.message.message import Message as Ros
-        from yarpy.peers.ros.message.native import to_value
 
         if not (isinstance(type_, type) and issubclass(type_, Ros)):
             return to_value(self.ros, type_)
@@ -125,8 +125,8 @@ def _encode(packet: Packet, kind: Kind, now: Callable[[], float] | None) -> tupl
         return (value[0],)
     if kind is None:
         return tuple(packet.blocks)
+    from yarpy.peers.ros.message.convert.native import to_message
     from yarpy.peers.ros.message.message import Message as Ros
-    from yarpy.peers.ros.message.native import to_message
 
     if isinstance(value, Ros):
         if (value._type, value._md5sum) != _identity(kind):

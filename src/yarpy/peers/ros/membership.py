@@ -146,7 +146,7 @@ class Membership:
         one; return whether there is such a type. A subscriber that wants another gets that."""
         if self.name.category != PUBLISHER or self.type or self.hub is None:
             return False
-        from yarpy.peers.ros.message.native import natural_type
+        from yarpy.peers.ros.message.convert.native import natural_type
 
         found = natural_type(value)
         if found is None:

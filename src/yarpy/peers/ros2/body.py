@@ -14,8 +14,8 @@ from typing import Any, Final
 from yarpy.data import codec
 from yarpy.data.value import Buffer
 from yarpy.peers.ros.body import RosMessage, said_by
+from yarpy.peers.ros.message.convert.native import to_message, to_value
 from yarpy.peers.ros.message.message import Message as Ros
-from yarpy.peers.ros.message.native import to_message, to_value
 from yarpy.wire.message import UNSENDABLE, Encoded, Packet
 
 _HEAD: Final = 4  # bytes in front of the fields

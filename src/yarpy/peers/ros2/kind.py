@@ -13,9 +13,9 @@ from typing import Any, Final
 
 from yarpy.data.sig.vector import Vector
 from yarpy.errors import DecodeError, UnknownType, YarpError
+from yarpy.peers.ros.message.convert.native import are_numbers, type_for
 from yarpy.peers.ros.message.library import Service
 from yarpy.peers.ros.message.message import Message
-from yarpy.peers.ros.message.native import are_numbers, type_for
 from yarpy.peers.ros2.key import NO_HASH, Key
 from yarpy.peers.ros2.message.hash import dds_name, full_name, is_hash, ros_name
 from yarpy.peers.ros2.message.library import Library, default_library, hash_of

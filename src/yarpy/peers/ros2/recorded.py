@@ -10,7 +10,7 @@ from typing import Any, TypeAlias
 
 from yarpy.errors import DecodeError
 from yarpy.limit import ROS_FULL_TEXT
-from yarpy.peers.ros.message.native import to_native
+from yarpy.peers.ros.message.convert.native import to_native
 from yarpy.peers.ros2.body import message_of
 from yarpy.peers.ros2.message.action import plain_name
 from yarpy.peers.ros2.message.library import Library, default_library

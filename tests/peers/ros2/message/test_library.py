@@ -10,7 +10,7 @@ import pytest
 
 import yarpy
 from yarpy.errors import DecodeError, UnknownType
-from yarpy.peers.ros.message.native import stamp_of, to_message, to_value
+from yarpy.peers.ros.message.convert.native import stamp_of, to_message, to_value
 from yarpy.peers.ros.message.source import Texts
 from yarpy.peers.ros2.message.library import Library, default_library, hash_of
 from yarpy.peers.ros2.message.source import Rosbags, Standard, installed

@@ -22,8 +22,8 @@ import numpy as np
 
 import yarpy
 from wrapyfi.middlewares._form import Native, Picture, Sound
+from yarpy.peers.ros.message.convert.picture import decompressed, image_of
 from yarpy.peers.ros.message.message import Message
-from yarpy.peers.ros.message.picture import decompressed, image_of
 
 _AUDIO = """\
 std_msgs/Header header

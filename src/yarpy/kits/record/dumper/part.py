@@ -133,7 +133,7 @@ def _png(image: Image) -> bytes:
         import cv2
     except ImportError:
         raise UnknownPlugin('pictures as PNG need OpenCV: pip install "yarpy[vision]"') from None
-    from yarpy.monitors.stock import png
+    from yarpy.data.sig import png
 
     return png.encode(cv2, image if str(image.code) == "mono" else image.converted("rgb"))
 

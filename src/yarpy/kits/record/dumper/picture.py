@@ -59,7 +59,7 @@ def _png(data: bytes) -> Any:
         import cv2
     except ImportError:
         raise UnknownPlugin('pictures as PNG need OpenCV: pip install "yarpy[vision]"') from None
-    from yarpy.monitors.stock import png
+    from yarpy.data.sig import png
 
     grey = data[25:26] in (b"\0", b"\4")  # the kind of colour in its head
     return png.decode(cv2, data, "mono" if grey else "rgb", limits().picture).array

@@ -10,8 +10,8 @@ from collections.abc import Callable
 from typing import Any, TypeAlias
 
 from yarpy.peers.ros.body import envelope_of
+from yarpy.peers.ros.message.convert.native import to_native
 from yarpy.peers.ros.message.library import default_library
-from yarpy.peers.ros.message.native import to_native
 from yarpy.peers.ros.message.parse import peer_type_name
 
 #: the object of the type, what it is for programs of YARP, and its envelope

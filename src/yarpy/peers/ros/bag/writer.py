@@ -20,9 +20,9 @@ from yarpy.data.stamp import Stamp
 from yarpy.errors import LocalProtocolError, UnknownPlugin
 from yarpy.peers.ros.bag.reader import NEEDED
 from yarpy.peers.ros.graph_name import check_graph_name
+from yarpy.peers.ros.message.convert.native import to_message
 from yarpy.peers.ros.message.library import default_library
 from yarpy.peers.ros.message.message import Message, Time
-from yarpy.peers.ros.message.native import to_message
 
 _SECOND: Final = 1_000_000_000
 _LATEST: Final = (1 << 32) * _SECOND  # what the file can say

@@ -16,7 +16,7 @@ from typing import Any
 from yarpy.data.generated import Code
 from yarpy.peers.ros.message import reader as plain_reader
 from yarpy.peers.ros.message import writer as plain_writer
-from yarpy.peers.ros.message.bottle import from_bottle, to_bottle
+from yarpy.peers.ros.message.convert.bottle import from_bottle, to_bottle
 from yarpy.peers.ros.message.definition import Definition
 from yarpy.peers.ros.message.message import Duration, Message, Time, attribute
 from yarpy.peers.ros.message.model import Field, ListOf, Primitive, Struct, Type

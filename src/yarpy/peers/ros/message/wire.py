@@ -33,7 +33,7 @@ from yarpy.data.value import (
 )
 from yarpy.errors import DecodeError, Truncated
 from yarpy.limit import limits
-from yarpy.peers.ros.message.bottle import from_bottle
+from yarpy.peers.ros.message.convert.bottle import from_bottle
 from yarpy.peers.ros.message.fault import array_of, fault
 from yarpy.peers.ros.message.message import (
     TIMES,

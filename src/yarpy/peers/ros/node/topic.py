@@ -68,7 +68,7 @@ class Publisher(MessagePort):
         if plain and type(value) is self.type:
             return self._write_at_once(value)
         if not isinstance(value, RosMessage):
-            from yarpy.peers.ros.message.native import to_message
+            from yarpy.peers.ros.message.convert.native import to_message
 
             now = Stamp(self._count, self._member.clock()) if stamp is None else None
             value = to_message(value, self.type, now)

@@ -25,9 +25,9 @@ from yarpy.kits.wrap.array import Picture
 from yarpy.kits.wrap.middleware import Failure, Item, Signature, Way
 from yarpy.kits.wrap.shape import ANY, Nothing, Record, Row, Scalar, Several, Shape, Wired
 from yarpy.kits.wrap.tree import from_text, to_text
+from yarpy.peers.ros.message.convert.native import to_message, to_value
 from yarpy.peers.ros.message.message import Message as RosMessage
 from yarpy.peers.ros.message.model import ListOf, Primitive, Struct, Type
-from yarpy.peers.ros.message.native import to_message, to_value
 
 _PACKAGE: Final = "yarpy_wrap"
 _SCALARS: Final = {str: "string", int: "int64", float: "float64", bool: "bool", bytes: "uint8[]"}

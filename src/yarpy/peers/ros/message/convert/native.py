@@ -26,15 +26,15 @@ from yarpy.data.sig.sound import Sound
 from yarpy.data.sig.vector import Vector
 from yarpy.data.stamp import Stamp
 from yarpy.errors import DecodeError
-from yarpy.peers.ros.message.cloud import cloud_message, cloud_of
-from yarpy.peers.ros.message.fault import array_of
-from yarpy.peers.ros.message.message import Message, Time
-from yarpy.peers.ros.message.picture import (
+from yarpy.peers.ros.message.convert.cloud import cloud_message, cloud_of
+from yarpy.peers.ros.message.convert.picture import (
     compressed_message,
     decompressed,
     image_message,
     image_of,
 )
+from yarpy.peers.ros.message.fault import array_of
+from yarpy.peers.ros.message.message import Message, Time
 
 #: the type of a topic that nobody gave another, by what is written there first
 TYPES: Final = {

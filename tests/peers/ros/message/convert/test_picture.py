@@ -9,7 +9,7 @@ from support import ros
 from yarpy.data.sig.image import Image
 from yarpy.data.sig.pixel import NAMES, pixel_of
 from yarpy.errors import DecodeError
-from yarpy.peers.ros.message import picture
+from yarpy.peers.ros.message.convert import picture
 from yarpy.peers.ros.message.library import Library
 
 # What C++ YARP published of a picture of 3 times 2 pixels: sequence, time, "/frame", ...

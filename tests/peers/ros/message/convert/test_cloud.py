@@ -8,7 +8,7 @@ from support import ros
 
 from yarpy.data.sig.pointcloud import KINDS, PointCloud
 from yarpy.errors import DecodeError
-from yarpy.peers.ros.message import cloud
+from yarpy.peers.ros.message.convert import cloud
 from yarpy.peers.ros.message.library import Library
 
 

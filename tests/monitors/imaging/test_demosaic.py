@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from yarpy.monitors.stock import demosaic
+from yarpy.monitors.imaging import demosaic
 
 NARROW = np.array(
     [

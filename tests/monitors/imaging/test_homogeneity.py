@@ -7,8 +7,8 @@ import zlib
 import numpy as np
 import pytest
 
-from yarpy.monitors.stock.demosaic import averaged, pattern
-from yarpy.monitors.stock.homogeneity import ahd
+from yarpy.monitors.imaging.demosaic import averaged, pattern
+from yarpy.monitors.imaging.homogeneity import ahd
 
 WIDE = np.array(
     [

@@ -16,12 +16,12 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any, Final
 
-from yarpy.monitors.stock.demosaic import ACROSS, ALONG, DIAGONAL, Views, assembled, averaged
+from yarpy.monitors.imaging.demosaic import ACROSS, ALONG, DIAGONAL, Views, assembled, averaged
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    from yarpy.monitors.stock.demosaic import Colour, Grey
+    from yarpy.monitors.imaging.demosaic import Colour, Grey
 
 _FRAME: Final = 3
 _REACH: Final = 2  # pixels on each side that the interpolation of green needs
@@ -38,7 +38,7 @@ Pair = tuple[tuple[int, int], tuple[int, int]]
 
 
 def ahd(grey: Grey, green: int, red: int) -> Colour:
-    """Colour of the same shape; the arguments are those of `yarpy.monitors.stock.demosaic`."""
+    """Colour of the same shape; the arguments are those of `yarpy.monitors.imaging.demosaic`."""
     import numpy as np
 
     out = averaged(grey, green, red)

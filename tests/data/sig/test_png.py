@@ -12,10 +12,10 @@ from hypothesis import given
 from hypothesis import strategies as st
 from support.monitor import damaged
 
+from yarpy.data.sig import png
 from yarpy.data.sig.image import Image
 from yarpy.data.sig.pixel import pixel_of
 from yarpy.errors import DecodeError
-from yarpy.monitors.stock import png
 
 LIMIT = 1 << 20
 

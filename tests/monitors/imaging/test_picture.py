@@ -7,7 +7,7 @@ import pytest
 
 from yarpy import Bottle, Image
 from yarpy.errors import DecodeError
-from yarpy.monitors.stock.picture import picture
+from yarpy.monitors.imaging.picture import picture
 from yarpy.wire.message import DATA, Message, Packet
 
 

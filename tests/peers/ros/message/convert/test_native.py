@@ -8,9 +8,9 @@ import pytest
 import yarpy
 from yarpy.data.bottle import Bottle
 from yarpy.errors import DecodeError
+from yarpy.peers.ros.message.convert.native import stamp_of, to_message, to_value, type_for
 from yarpy.peers.ros.message.library import Library
 from yarpy.peers.ros.message.message import Time
-from yarpy.peers.ros.message.native import stamp_of, to_message, to_value, type_for
 
 IMAGE = yarpy.Image(np.arange(24, dtype="u1").reshape(2, 4, 3))
 VALUES = [

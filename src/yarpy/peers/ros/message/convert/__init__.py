@@ -1,0 +1,1 @@
+"""Values of YARP as messages of ROS, and back."""
