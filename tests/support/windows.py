@@ -65,10 +65,15 @@ LAUNCH = (
     "supervise",
 )
 PEERS = ("peers/zmq", "peers/mqtt", "peers/ros")
+ROS2 = ("action", "dds", "message", "node", "parameter")  # `zenoh` needs what wine does not load
 PATHS = (
     *("tests/nameserver", "tests/monitors", "tests/testing", "tests/aio", "tests/compat"),
     *(f"tests/kits/{room}" for room in ("devices", "doctor", "sim", "thrift", "views", "wrap")),
-    *("tests/kits/launch/verbs", "tests/peers/zenoh", "tests/life"),
+    *("tests/kits/launch/verbs", "tests/kits/launch/console", "tests/peers/zenoh", "tests/life"),
+    *(f"tests/peers/ros2/{room}" for room in ROS2),
+    *sorted(
+        f"tests/peers/ros2/{file.name}" for file in (ROOT / "tests/peers/ros2").glob("test_*.py")
+    ),
     *("tests/port/keep", "tests/port/answer", "tests/port/connect"),
     *sorted(f"tests/port/{file.name}" for file in (ROOT / "tests/port").glob("test_*.py")),
     *sorted(

@@ -83,6 +83,8 @@ def test_where_nobody_tells_whose_program_it_is(monkeypatch: pytest.MonkeyPatch)
     here = Peer("127.0.0.1", True, ends=(("127.0.0.1", 1), ("127.0.0.1", 2)))
     assert "unlike Linux, does not tell" in why(here)
     assert "only its owner on that computer may" in why(FAR)
+    assert "nobody yet" in permission.audience(False)
+    assert permission.audience(True) == "those who may by access.toml"
 
 
 # What anybody can type into telnet.

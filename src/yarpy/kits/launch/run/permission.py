@@ -24,6 +24,23 @@ _TABLES: Final = ("/proc/net/tcp", "/proc/net/tcp6")
 _ESTABLISHED: Final = "01"
 
 
+def audience(others: bool) -> str:
+    """Return for whom a server starts programs, in words. others: rules let others do that."""
+    if others:
+        return "those who may by access.toml"
+    if _tells():
+        return "its user on this computer"
+    return (
+        "nobody yet, for this system, unlike Linux, does not tell whose program asks: yarpy access "
+        "allow run tls:NAME, and --allow PROGRAM"
+    )
+
+
+def _tells() -> bool:
+    """Return whether the system tells whose program asks."""
+    return any(map(os.path.exists, _TABLES))
+
+
 class RunGate(Gate):
     """The gate of the port called `name`. listed: there is a list of programs."""
 
@@ -45,7 +62,7 @@ class RunGate(Gate):
             return ""
         if not (peer.names or peer.key):
             who = f"a program of another user of {peer}" if peer.here else str(peer)
-            if peer.here and not any(map(os.path.exists, _TABLES)):
+            if peer.here and not _tells():
                 return (
                     f"{peer} may not start programs through {name}: this system, unlike Linux, does"
                     " not tell whose program asks; who comes with a certificate may if the owner of"

@@ -173,6 +173,7 @@ def serve(
     """Start programs until a signal comes, or somebody says exit."""
     from yarpy.config import access_file
     from yarpy.kits.launch.run.allowed import Allowed
+    from yarpy.kits.launch.run.permission import audience
     from yarpy.kits.launch.run.server import RunServer
     from yarpy.link.begin.admission import RUN
     from yarpy.transports.bind import SETTING
@@ -185,7 +186,7 @@ def serve(
     shown_log.show()
     over = Waiter()
     server = RunServer(name, allowed=allowed, log=log_to, ends=ends, on_exit=over.wake)
-    whom = "those who may by access.toml" if allowed and others else "its user on this computer"
+    whom = audience(bool(allowed) and others)
     what = ", ".join(" ".join(entry) for entry in allowed.entries) or "programs"
     log.info("%s starts %s for %s", name, what, whom)
     try:
