@@ -164,7 +164,8 @@ class Declared:
     """The description that our port gives of itself where a protocol asks for it: the node that it
     belongs to, its topic or service, the name of its type, and the class of that, as far as it is
     known. `latched`: who comes late gets the last message. `clock` gives the time for messages
-    without a stamp, in seconds. `graph`: the name of the graph that its node belongs to."""
+    without a stamp, in seconds. `graph`: the name of the graph that its node belongs to. `frame`:
+    the frame of reference of its pictures and points."""
 
     node: str = ""
     topic: str = ""
@@ -173,6 +174,7 @@ class Declared:
     latched: bool = False
     clock: Callable[[], float] | None = None
     graph: str = ""
+    frame: str = ""
 
 
 UNDECLARED: Final = Declared()

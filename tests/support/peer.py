@@ -196,6 +196,7 @@ PEERS: dict[str, Callable[[], str]] = {
         package="python3-rosbag topic-tools",
     ),
     "rosmaster": _programs(*_ROS_TOOLS, package=" ".join(f"python3-{n}" for n in _ROS_TOOLS)),
+    "tf_echo": _files("/usr/lib/tf/tf_echo", package="tf-tools"),
     "image_view": _files("/usr/lib/image_view/image_saver", package="ros-image-view"),
     "thrift": _made(thrift_venv.prepare),
     "thrift_compiler": _programs("thrift", package="thrift-compiler"),

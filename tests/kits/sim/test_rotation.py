@@ -35,3 +35,21 @@ def test_vectors():
 def test_roll_pitch_yaw():
     assert of.roll_pitch_yaw(TURN) == pytest.approx((50, -40, 30))
     assert of.roll_pitch_yaw(of.about_y(90))[1] == pytest.approx(90)
+
+
+def test_quaternions():
+    """Each component the largest once; the rotation of each is what it was made of."""
+    for turn in (TURN, of.about_x(170), of.about_y(170), of.about_z(170), of.about_z(-170)):
+        x, y, z, w = of.quaternion(turn)
+        assert w >= 0 and x * x + y * y + z * z + w * w == pytest.approx(1.0)
+        rows = (
+            (1 - 2 * (y * y + z * z), 2 * (x * y - z * w), 2 * (x * z + y * w)),
+            (2 * (x * y + z * w), 1 - 2 * (x * x + z * z), 2 * (y * z - x * w)),
+            (2 * (x * z - y * w), 2 * (y * z + x * w), 1 - 2 * (x * x + y * y)),
+        )
+        assert np.array(rows) == pytest.approx(np.array(turn))
+    assert of.quaternion(of.about_x(180)) == pytest.approx((1, 0, 0, 0))
+
+
+def test_the_inverse():
+    assert np.array(of.after(TURN, of.inverse(TURN))) == pytest.approx(np.eye(3), abs=1e-12)

@@ -5,6 +5,7 @@ from math import degrees
 from pathlib import Path
 
 import pytest
+from support.process import Process
 from support.ros_graph import RosGraph
 from support.wait import HANG, wait_until
 
@@ -14,6 +15,7 @@ from yarpy.errors import AddressError
 from yarpy.kits.sim.axis import Axis
 from yarpy.kits.sim.board import Board
 from yarpy.kits.sim.body import Body
+from yarpy.kits.sim.head import eye_pose
 from yarpy.kits.sim.joint import Joint
 from yarpy.kits.sim.robot import Parts, Robot, icub_head
 from yarpy.peers.ros.node.node import Node
@@ -26,7 +28,7 @@ rospy.init_node("watcher", disable_signals=True)
 for side in ("left", "right"):
     image = rospy.wait_for_message("/icubSim/cam/" + side, Image, timeout=30)
     print("saw", side, image.width, image.height, image.encoding, len(set(image.data)) > 10,
-          image.header.stamp.to_sec() > 1e9, flush=True)
+          image.header.stamp.to_sec() > 1e9, image.header.frame_id, flush=True)
 state = rospy.wait_for_message("/icubSim/joint_states", JointState, timeout=30)
 print("joints", *state.name, len(state.position), len(state.velocity), len(state.effort),
       state.header.stamp.to_sec() > 1e9, flush=True)
@@ -84,7 +86,9 @@ def robot() -> Iterator[Robot]:
 def test_rospy_sees_pictures_and_joints(graph: RosGraph, robot: Robot) -> None:
     with RosRobot(robot, graph.uri), graph.python(WATCHER) as watcher:
         for side in ("left", "right"):
-            watcher.wait_line(f"saw {side} 64 48 rgb8 True True", timeout=2 * HANG)
+            watcher.wait_line(
+                f"saw {side} 64 48 rgb8 True True icubSim/cam/{side}$", timeout=2 * HANG
+            )
         watcher.wait_line(
             "joints neck_pitch neck_roll neck_yaw eyes_tilt eyes_version eyes_vergence 6 6 0 True"
         )
@@ -102,6 +106,27 @@ def test_rospy_moves_joints(graph: RosGraph, robot: Robot) -> None:
         mover.wait_line("^there$", timeout=2 * HANG)
         board = robot.parts.boards["head"]
         assert abs(board.encoders()[2] - degrees(0.5)) < 1
+
+
+def tf_echo(graph: RosGraph, frame: str) -> Process:
+    """ROS's own tool, in C++."""
+    return Process(["/usr/lib/tf/tf_echo", "icubSim/root_link", frame], env=graph.environment)
+
+
+@pytest.mark.peer("tf_echo")
+def test_tf_echo_sees_where_its_head_and_its_eyes_are(graph: RosGraph, robot: Robot) -> None:
+    board = robot.parts.boards["head"]
+    board.position_move([2], [30.0])  # type: ignore[attr-defined]
+    wait_until(lambda: abs(board.encoders()[2] - 30.0) < 1e-3, HANG, "it looks to the left")
+    with RosRobot(robot, graph.uri):
+        with tf_echo(graph, "icubSim/head") as echo:
+            echo.wait_line(r"Translation: \[0\.000, -?0\.000, 0\.970\]", timeout=2 * HANG)
+            echo.wait_line(r"RPY \(degree\) \[-?0\.000, -?0\.000, 30\.000\]", timeout=HANG)
+        with tf_echo(graph, "icubSim/cam/left") as echo:
+            x, y, z = eye_pose(board.encoders(), "left").position
+            echo.wait_line(rf"Translation: \[{x:.3f}, {y:.3f}, {z:.3f}\]", timeout=2 * HANG)
+            # A camera: z ahead, 30 degrees to the left of forward.
+            echo.wait_line(r"RPY \(degree\) \[-90\.000, -?0\.000, -60\.000\]", timeout=HANG)
 
 
 def test_a_broken_address_file_is_no_master(
@@ -174,7 +199,7 @@ def test_a_camera_that_is_a_topic_by_its_name(
     with Robot("/icubSim", head, names=yarpy.LocalNames()) as robot, RosRobot(robot):
         publishers, _, _ = graph.master.state()
         topics = {topic for topic, nodes in publishers if nodes == ["/icubSim"]}
-    assert topics == {"/eye", "/icubSim/cam/right", "/icubSim/joint_states"}
+    assert topics == {"/eye", "/icubSim/cam/right", "/icubSim/joint_states", "/tf"}
 
 
 def test_a_name_that_ros_does_not_allow(graph: RosGraph) -> None:

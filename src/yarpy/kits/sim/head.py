@@ -30,7 +30,8 @@ BASELINE: Final = 0.068  # between the eyes
 IMU: Final = (-0.01, 0.0, 0.12)  # from neck_yaw to the inertial unit
 GRAVITY: Final = 9.81  # m/s^2
 
-_CAMERA: Final = ((0.0, 0.0, 1.0), (-1.0, 0.0, 0.0), (0.0, -1.0, 0.0))
+#: the frame of a camera, in one with x forward, y to the left, z up
+CAMERA: Final = ((0.0, 0.0, 1.0), (-1.0, 0.0, 0.0), (0.0, -1.0, 0.0))
 _H = 1e-4  # seconds, for the change of a speed
 
 
@@ -57,11 +58,19 @@ def eye_pose(angles: Sequence[float], side: Side) -> Pose:
     camera's."""
     head = _chain(angles)[-1]
     tilt, version, vergence = angles[3:6]
-    left = side == "left"
-    pan = version - vergence / 2 if left else version + vergence / 2
-    looking = of.after(of.after(head.rotation, of.about_y(-tilt)), of.about_z(pan))
-    place = (EYES[0], EYES[1] + (BASELINE / 2 if left else -BASELINE / 2), EYES[2])
-    return Pose(of.after(looking, _CAMERA), _beyond(head, place))
+    eyes = Pose(of.after(head.rotation, of.about_y(-tilt)), _beyond(head, EYES))
+    looking = of.after(eyes.rotation, of.about_z(eye_turn(version, vergence, side)))
+    return Pose(of.after(looking, CAMERA), _beyond(eyes, eye_place(side)))
+
+
+def eye_turn(version: float, vergence: float, side: Side) -> float:
+    """Return by how many degrees an eye looks to the left of where both look with all at 0."""
+    return version - vergence / 2 if side == "left" else version + vergence / 2
+
+
+def eye_place(side: Side) -> Vector:
+    """Return where an eye is, from the point between both."""
+    return (0.0, BASELINE / 2 if side == "left" else -BASELINE / 2, 0.0)
 
 
 def inertia(

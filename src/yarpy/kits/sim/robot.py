@@ -20,6 +20,7 @@ from yarpy.kits.devices.control_board.interface import Joints
 from yarpy.kits.devices.frame_grabber.interface import Camera
 from yarpy.kits.sim.board import Board
 from yarpy.kits.sim.body import Body, Clock
+from yarpy.kits.sim.frame import Framed
 from yarpy.kits.sim.head import SIDES
 from yarpy.kits.sim.icub import ICUB_BODY, ICUB_HEAD
 from yarpy.kits.sim.joint import Joint
@@ -51,6 +52,7 @@ class Parts:
     sensors: Mapping[str, object] = field(default_factory=dict)
     lasers: Mapping[str, object] = field(default_factory=dict)
     base: Localized | None = None
+    frames: Framed | None = None
 
 
 def icub_head(size: tuple[int, int] = SIZE, clock: Clock = now) -> Parts:
@@ -60,6 +62,7 @@ def icub_head(size: tuple[int, int] = SIZE, clock: Clock = now) -> Parts:
     the program (`yarpy.clock`).
     """
     from yarpy.kits.sim.eye import Eye, Shutter
+    from yarpy.kits.sim.head_frames import HeadFrames
     from yarpy.kits.sim.inertial import Inertial
     from yarpy.kits.sim.scene import room
 
@@ -67,7 +70,10 @@ def icub_head(size: tuple[int, int] = SIZE, clock: Clock = now) -> Parts:
     shutter, scene = Shutter(body), room()
     left, right = (Eye(shutter, scene, side, *size) for side in SIDES)
     return Parts(
-        {"head": Board(body)}, {"cam/left": left, "cam/right": right}, {"inertial": Inertial(body)}
+        {"head": Board(body)},
+        {"cam/left": left, "cam/right": right},
+        {"inertial": Inertial(body)},
+        frames=HeadFrames(body),
     )
 
 
@@ -79,7 +85,7 @@ def icub(size: tuple[int, int] = SIZE, clock: Clock = now) -> Parts:
     body = {
         part: Board(Body([Joint(axis) for axis in axes], clock)) for part, axes in ICUB_BODY.items()
     }
-    return Parts({**head.boards, **body}, head.cameras, head.sensors)
+    return Parts({**head.boards, **body}, head.cameras, head.sensors, frames=head.frames)
 
 
 class Robot(Closeable):

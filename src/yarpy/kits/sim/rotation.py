@@ -5,11 +5,12 @@ A rotation is three rows; it converts vectors of a frame to those of the frame a
 
 from __future__ import annotations
 
-from math import asin, atan2, cos, degrees, radians, sin
+from math import asin, atan2, copysign, cos, degrees, radians, sin, sqrt
 from typing import TypeAlias
 
 Vector: TypeAlias = tuple[float, float, float]
 Rotation: TypeAlias = tuple[Vector, Vector, Vector]
+Quaternion: TypeAlias = tuple[float, float, float, float]
 
 
 def about_x(angle: float) -> Rotation:
@@ -39,6 +40,12 @@ def after(one: Rotation, other: Rotation) -> Rotation:
         (d * j + e * n + f * q, d * k + e * o + f * r, d * m + e * p + f * s),
         (g * j + h * n + i * q, g * k + h * o + i * r, g * m + h * p + i * s),
     )
+
+
+def inverse(rotation: Rotation) -> Rotation:
+    """The inverse: it converts vectors of the frame around to those of the frame."""
+    (a, b, c), (d, e, f), (g, h, i) = rotation
+    return (a, d, g), (b, e, h), (c, f, i)
 
 
 def turned(rotation: Rotation, vector: Vector) -> Vector:
@@ -78,3 +85,23 @@ def roll_pitch_yaw(rotation: Rotation) -> Vector:
         degrees(asin(max(-1.0, min(1.0, -rotation[2][0])))),
         degrees(atan2(rotation[1][0], rotation[0][0])),
     )
+
+
+def quaternion(rotation: Rotation) -> Quaternion:
+    """The unit quaternion x, y, z, w with w not below 0. Source: Shepperd, Quaternion from rotation
+    matrix, 1978, with the largest component found first, so that nothing small is divided by."""
+    (a, b, c), (d, e, f), (g, h, i) = rotation
+    squares = (1 + a - e - i, 1 - a + e - i, 1 - a - e + i, 1 + a + e + i)  # four times
+    largest = max(range(4), key=squares.__getitem__)
+    twice = sqrt(squares[largest])
+    if largest == 3:
+        found = (h - f, c - g, d - b, squares[3])
+    elif largest == 0:
+        found = (squares[0], b + d, c + g, h - f)
+    elif largest == 1:
+        found = (b + d, squares[1], f + h, c - g)
+    else:
+        found = (c + g, f + h, squares[2], d - b)
+    factor = copysign(1.0, found[3]) / (2 * twice)
+    x, y, z, w = found
+    return x * factor, y * factor, z * factor, w * factor

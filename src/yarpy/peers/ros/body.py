@@ -102,19 +102,24 @@ def message_of(key: str, body: Buffer, kind: Kind, raw: bool, headed: bool = Fal
     return Message(key, b"".join(codec.encode([bytes(body)])) if raw else body)
 
 
-def encode_body(packet: Packet, kind: Kind, now: Callable[[], float] | None) -> tuple[Buffer, ...]:
-    """The body of what goes out, made once for all connections of a type.
+def encode_body(
+    packet: Packet, kind: Kind, now: Callable[[], float] | None, frame: str = ""
+) -> tuple[Buffer, ...]:
+    """The body of what goes out, made once for all connections of a type and a `frame`: that of
+    pictures and points.
 
     Raises TypeError, ValueError or OverflowError for what is nothing of that type.
     """
-    key = "ros", kind
+    key = "ros", kind, frame
     found = packet.forms.get(key)
     if found is None:
-        found = packet.forms[key] = _encode(packet, kind, now)
+        found = packet.forms[key] = _encode(packet, kind, now, frame)
     return found
 
 
-def _encode(packet: Packet, kind: Kind, now: Callable[[], float] | None) -> tuple[Buffer, ...]:
+def _encode(
+    packet: Packet, kind: Kind, now: Callable[[], float] | None, frame: str
+) -> tuple[Buffer, ...]:
     value: Any = packet.value
     if kind is not None and type(value) is kind and not packet.envelope:
         blocks: Blocks = value.to_ros()
@@ -134,7 +139,7 @@ def _encode(packet: Packet, kind: Kind, now: Callable[[], float] | None) -> tupl
         if not packet.envelope:
             return value.to_ros()
     try:
-        made = to_message(value, kind)
+        made = to_message(value, kind, frame_id=frame)
     except UNSENDABLE as error:
         raise type(error)(f"{kind._type} is expected here: {error}") from None
     return _stamped(made.to_ros(), kind, packet.envelope, now)

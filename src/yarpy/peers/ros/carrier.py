@@ -42,7 +42,7 @@ from yarpy.route import Route
 from yarpy.wire.effects import HEAR, May
 from yarpy.wire.message import DATA, UNSENDABLE, Message, Packet
 from yarpy.wire.steps import Steps
-from yarpy.wire.stream import LARGE, ByteStream
+from yarpy.wire.stream import LARGE, Buffer, ByteStream
 
 log = logger("yarpy.link")
 
@@ -168,19 +168,23 @@ class TcpRos(Carrier):
             return None
         return LENGTH.pack(len(body[0])) + body[0]
 
+    def _body(self, packet: Packet) -> tuple[Buffer, ...]:
+        declared = self.route.declared
+        return encode_body(packet, self.kind, declared.clock, declared.frame)
+
     def prepare(self, packet: Packet) -> bool:
         try:
-            body = encode_body(packet, self.kind, self.route.declared.clock)
+            body = self._body(packet)
         except UNSENDABLE as error:
             self._complain(str(error))
             return False
         if any(type(block) is not bytes for block in body):  # it leaves later
-            packet.forms["ros", self.kind] = tuple(map(bytes, body))
+            packet.forms["ros", self.kind, self.route.declared.frame] = tuple(map(bytes, body))
         return True
 
     def encode(self, stream: ByteStream, packet: Packet) -> None:
         try:
-            body = encode_body(packet, self.kind, self.route.declared.clock)
+            body = self._body(packet)
         except UNSENDABLE as error:
             self._complain(str(error))
             self.lost += 1

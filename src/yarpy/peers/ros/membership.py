@@ -92,7 +92,7 @@ class Membership:
     """A role of a port in the graph. `kind` is the class of its messages, or a Service; None: the
     kind of its peers. `latched`: late subscribers get the last message. `queue_size`: so many
     messages wait for a subscriber that is behind; 0: the writer waits for it. `attached`: the port
-    existed before the node, and outlives it."""
+    existed before the node, and outlives it. `frame`: that of headers which have none."""
 
     name: NodeName
     type: str = ""
@@ -101,6 +101,7 @@ class Membership:
     queue_size: int = QUEUE_SIZE
     attached: bool = False
     clock: Callable[[], float] = time.time
+    frame: str = ""
     hub: Hub | None = None
     place: NodeAddress | None = None
     last: Packet | None = None  # of a latched publisher
@@ -120,8 +121,9 @@ class Membership:
     @property
     def declared(self) -> Declared:
         """The facts about the port that its connections announce."""
+        kind, clock = self.kind, self.clock
         return Declared(
-            self.node, self.topic, self.type, self.kind, self.latched, self.clock, graph=GRAPH_NAME
+            self.node, self.topic, self.type, kind, self.latched, clock, GRAPH_NAME, self.frame
         )
 
     @property

@@ -3,10 +3,11 @@
     /icubSim/cam/left                   sensor_msgs/Image, each camera
     /icubSim/joint_states               sensor_msgs/JointState, all joints of all parts
     /icubSim/set_model_configuration    gazebo_msgs/SetModelConfiguration: moves joints
+    /tf                                 tf2_msgs/TFMessage, where its parts and cameras are
 
 Rules: ROS measures angles in radians and lengths in metres, YARP in degrees and millimetres. All
-names are below the robot's own, so that it is not taken for another one. Nothing is measured or
-drawn while nobody subscribes.
+names are below the robot's own, also those of frames (icubSim/head), so that it is not taken for
+another one. Nothing is measured or drawn while nobody subscribes.
 """
 
 from __future__ import annotations
@@ -30,11 +31,13 @@ from yarpy.names.address import is_local
 from yarpy.peers.ros.graph_name import ros_name
 from yarpy.peers.ros.master import VARIABLE, RosMaster, parse_uri, uri_of
 from yarpy.peers.ros.node.node import Node
+from yarpy.peers.ros.transform.topic import MOVING, TYPE
 
 TRY: Final = """
 With ROS, whose master answers at {master}:
 
   rostopic echo {robot}/joint_states
+  rosrun tf tf_echo {model}/root_link {model}/head
   rosrun image_view image_view image:={robot}/cam/left
   rosservice call {robot}/set_model_configuration '' '' '[neck_yaw]' '[0.5]'
 
@@ -65,17 +68,23 @@ class RosRobot(Closeable):
     def __init__(self, robot: Robot, master: str | None = None) -> None:
         self._model = robot.name.strip("/")
         self._joints = _joints(robot)
+        self._framed = robot.parts.frames
         self._stamp = Stamp()
         with ExitStack() as resources:
             self.node = node = resources.enter_context(Node(robot.name, master=master))
             for part, port in robot.images.items():
                 if "@" not in port.name:  # else it is a topic already, by its name
-                    node.attach(port, ros_name(f"{robot.name}/{part}"), "sensor_msgs/Image")
+                    topic, frame = ros_name(f"{robot.name}/{part}"), self._frame(part)
+                    node.attach(port, topic, "sensor_msgs/Image", frame)
             if self._joints:
                 self._states = node.publisher("~joint_states", "sensor_msgs/JointState")
                 node.service("~set_model_configuration", SERVICE, self._move)
                 publisher = Publisher(f"{robot.name}/joint_states", PERIOD, self._publish)
                 resources.callback(publisher.close)
+            if self._framed is not None:
+                self._places = node.publisher(MOVING, TYPE, queue_size=100)
+                mover = Publisher(f"{robot.name}/tf", PERIOD, self._publish_frames)
+                resources.callback(mover.close)
             self._resources = resources.pop_all()
 
     def _publish(self) -> None:
@@ -92,6 +101,27 @@ class RosRobot(Closeable):
             "velocity": [speeds[each.board][each.number] * each.unit for each in self._joints],
         }
         self._states.write(state, self._stamp)
+
+    def _frame(self, name: str) -> str:
+        """The name of one of its frames in ROS, where those of all robots are together."""
+        return f"{self._model}/{name}"
+
+    def _publish_frames(self) -> None:
+        """Send where all frames are."""
+        if self._framed is None or not self._places.outputs:
+            return
+        when, frames = self._framed.frames()
+        seconds, rest = divmod(round(when * 1e9), 1_000_000_000)
+        made = []
+        for frame in frames:
+            place = {
+                "translation": dict(zip("xyz", frame.origin, strict=True)),
+                "rotation": dict(zip("xyzw", frame.orientation, strict=True)),
+            }
+            parent, child = self._frame(frame.parent), self._frame(frame.name)
+            header = {"stamp": [seconds, rest], "frame_id": parent}
+            made.append({"header": header, "child_frame_id": child, "transform": place})
+        self._places.write({"transforms": made})
 
     def _boards(self) -> dict[Any, None]:
         return dict.fromkeys(joint.board for joint in self._joints)
@@ -157,7 +187,7 @@ class RosGuest:
 
     def advice(self, robot: str, where: str) -> str:
         """Return what to try, for people."""
-        return TRY.format(robot=robot, master=where)
+        return TRY.format(robot=robot, model=robot.strip("/"), master=where)
 
 
 def _configured() -> str:

@@ -6,6 +6,7 @@ inertial          gyroscopes, accelerometers, magnetometers, orientations and po
                   forces with torques
 laser...          sites of such a name (`scanner.py`)
 odometry, localization    of the first body that moves freely (`base.py`)
+frames            its bodies and cameras (`frames.py`)
 
 Rules: a folder of MuJoCo Menagerie's layout is its `scene.xml`; without one, its only model.
 """
@@ -22,6 +23,7 @@ from yarpy.kits.sim.board import Board
 from yarpy.kits.sim.body import Clock
 from yarpy.kits.sim.mujoco.base import base_of
 from yarpy.kits.sim.mujoco.camera import FREE, Camera, Painter
+from yarpy.kits.sim.mujoco.frames import ModelFrames
 from yarpy.kits.sim.mujoco.model import load
 from yarpy.kits.sim.mujoco.scanner import scanners
 from yarpy.kits.sim.mujoco.sensor import Sensors
@@ -55,7 +57,9 @@ def mujoco_robot(
     if not (boards or cameras or sensors.count or lasers):
         raise ValueError(f"{path}: no joint with an actuator, no camera, no inertial sensor")
     felt = {"inertial": sensors} if sensors.count else {}
-    return _plain(model.name), Parts(boards, cameras, felt, lasers, base_of(model))
+    views = {f"cam/{_plain(name)}": number for number, name in enumerate(names)}
+    frames = ModelFrames(model, views)
+    return _plain(model.name), Parts(boards, cameras, felt, lasers, base_of(model), frames)
 
 
 def scene_in(path: Path) -> Path:

@@ -116,8 +116,9 @@ class Node(Parameters):
         member.latched, member.queue_size = latch, queue_size
         return self._keep(Publisher(self._open, member, kind))
 
-    def attach(self, port: BasePort, topic: str, type_: Type) -> None:
-        """Publish what an open port of YARP writes as a topic too, until either is closed.
+    def attach(self, port: BasePort, topic: str, type_: Type, frame: str = "") -> None:
+        """Publish what an open port of YARP writes as a topic too, until either is closed. `frame`:
+        that of its pictures and points, for the header.
 
         Its messages become messages of the type (`docs/ros.md` says which do); what does not fit
         is not sent, and the log says why. Raises AddressError for a port that belongs to a topic
@@ -128,7 +129,7 @@ class Node(Parameters):
             raise AddressError(f"{port.name} is a topic or a service of a node already")
         kind = _message_class(type_)
         member = self._member(topic, PUBLISHER, kind._type, kind)
-        member.attached = True
+        member.attached, member.frame = True, frame
         before, hub.registration.declared = hub.registration.declared, member.declared
         try:
             join(member, hub, self.master, without_masters(self._names), open_hub)
