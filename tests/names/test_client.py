@@ -15,7 +15,7 @@ from support.wait import HANG
 from yarpy.contact import Contact
 from yarpy.data.bottle import Bottle
 from yarpy.errors import AccessRefused, AddressError, NoNameServer, RemoteProtocolError, Timeout
-from yarpy.names import client as client_module
+from yarpy.names import idle_lines
 from yarpy.names import line as line_module
 from yarpy.names.client import YarpNameClient
 from yarpy.nameserver.reply import Reply
@@ -280,12 +280,12 @@ def test_both_kinds_of_connections_are_kept() -> None:
     with serve_names() as server, YarpNameClient("127.0.0.1", server.port) as client:
         lines = [client._open("lines") for _ in range(3)]
         for line in lines:
-            client._give_back(line)
+            client._idle.give_back(line)
         client.request(["bot", "get", "/x", "y"])
-        assert sorted(line.kind for line in client._idle) == ["acked", "lines", "lines"]
-        [acked] = [line for line in client._idle if line.kind == "acked"]
+        assert sorted(client._idle.kinds) == ["acked", "lines", "lines"]
+        before = server.connections
         client.request(["bot", "get", "/x", "y"])
-        assert acked in client._idle
+        assert server.connections == before
 
 
 def test_a_restarted_server_is_found_again() -> None:
@@ -360,7 +360,7 @@ def test_threads_do_not_mix_replies() -> None:
 def test_an_old_connection_is_not_trusted(monkeypatch: pytest.MonkeyPatch) -> None:
     with serve_names() as server, YarpNameClient("127.0.0.1", server.port) as names:
         names.query("/x")
-        monkeypatch.setattr(client_module, "IDLE", -1.0)  # a clock may not have moved
+        monkeypatch.setattr(idle_lines, "IDLE", -1.0)  # a clock may not have moved
         names.query("/x")
         assert server.connections == 2
 

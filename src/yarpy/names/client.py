@@ -1,6 +1,6 @@
 """The client of a YARP name server, ours or that of C++.
 
-Rules: safe to use from any thread, connections are lent to one command at a time. Old style
+Rules: safe to use from any thread (`idle_lines.py`). Old style
 commands go over `NAME_SERVER` lines, several over one connection. What C++ answers with a Bottle
 (`bot ...`, `subscribe`, `topic` ...) goes over `CONNACK`, where the end of a reply can be seen. A
 connection that turns out to be dead (the server was restarted) is replaced once before NoNameServer
@@ -18,7 +18,7 @@ from collections.abc import Callable, Mapping, Sequence
 from functools import lru_cache
 from typing import Any, Final, Literal, TypeVar
 
-from yarpy import fork, scope
+from yarpy import scope
 from yarpy.config.configuration import namespaces
 from yarpy.contact import Contact
 from yarpy.data.bottle import Bottle
@@ -34,6 +34,7 @@ from yarpy.errors import (
     YarpError,
 )
 from yarpy.names.base import Contacts, Strings, Values
+from yarpy.names.idle_lines import IdleLines
 from yarpy.names.line import Gone, Line, acknowledged, old_style
 from yarpy.names.registration_line import END, parse_registration
 from yarpy.transports.peer_timeout import notice_death
@@ -42,8 +43,6 @@ from yarpy.transports.tls_setting import required
 from yarpy.wire.framing import refused
 
 TIMEOUT: Final = 5.0  # seconds for a command
-IDLE = 10.0  # seconds after which an unused connection is not trusted any more
-SPARE = 2  # connections of each kind that are kept for the next command
 WHO = 1.0  # seconds to find out what listens there when it does not answer
 SHARE: Final = 0.8  # of the time of a call, for the answer; the rest is for finding that out
 FAIR: Final = 0.1  # seconds in which a server that is there answers; less says nothing of it
@@ -75,7 +74,6 @@ class YarpNameClient:
         own_host: str = "",
         prepare: Prepare | None = None,
     ) -> None:
-        self._idle: list[Line] = []
         if not (host and port):
             raise TypeError(
                 "which name server? YarpNameClient(host, port) asks that one; ports that are given "
@@ -86,7 +84,7 @@ class YarpNameClient:
         self.timeout = timeout
         self.own_host = own_host
         self._prepare = prepare
-        self._lock = fork.lock()  # guards the list only, never held across I/O
+        self._idle = IdleLines()
 
     # --- the NameClient
 
@@ -121,7 +119,7 @@ class YarpNameClient:
         self.command("unregister", name)
 
     def query(self, name: str) -> Contact | None:
-        if any(line.kind == "acked" for line in self._idle):  # one connection less to make
+        if "acked" in self._idle.kinds:  # one connection less to make
             words = ["query", name]
             lines = [*map(plain_text, self.request(words))]
         else:
@@ -156,14 +154,7 @@ class YarpNameClient:
         return contacts
 
     def close(self) -> None:
-        with self._lock:
-            idle, self._idle = self._idle, []
-        for line in idle:
-            line.close()
-
-    def __del__(self) -> None:
-        for line in self._idle:  # kept for speed; nobody has to think of closing them
-            line.close()
+        self._idle.close()
 
     def __enter__(self) -> YarpNameClient:
         return self
@@ -240,7 +231,7 @@ class YarpNameClient:
         seconds = self._time_limit()
         until = time.monotonic() + seconds
         try:
-            line = self._borrow(kind)
+            line = self._idle.borrow(kind)
             if line is not None:
                 try:
                     return self._talk(line, talk, until)
@@ -274,7 +265,7 @@ class YarpNameClient:
         except BaseException:
             line.close()
             raise
-        self._give_back(line)
+        self._idle.give_back(line)
         return reply
 
     def _open(
@@ -318,32 +309,6 @@ class YarpNameClient:
         if line.kind == "acked":
             line.send(b"CONNACK admin\r\n")
             line.line()  # "Welcome admin"
-
-    def _borrow(self, kind: str) -> Line | None:
-        now, process = time.monotonic(), os.getpid()
-        stale = []
-        found = None
-        with self._lock:
-            for line in reversed(self._idle):
-                # A fork shares the socket; two processes in one dialogue would mix their replies.
-                if now - line.used > IDLE or line.process != process:
-                    stale.append(line)
-                elif found is None and line.kind == kind:
-                    found = line
-            gone = {id(line) for line in (*stale, found)}
-            self._idle = [line for line in self._idle if id(line) not in gone]
-        for line in stale:
-            line.close()
-        return found
-
-    def _give_back(self, line: Line) -> None:
-        line.used = time.monotonic()
-        with self._lock:
-            alike = sum(other.kind == line.kind for other in self._idle)
-            if line.clean and alike < SPARE:
-                self._idle.append(line)
-                return
-        line.close()
 
     def _late(self) -> Timeout:
         return Timeout(f"the time was over before the name server at {self.address} answered")
