@@ -112,15 +112,39 @@ def test_who_finds_no_place_is_told_before_it_sends(
         RECONNECTOR.give_up(second._hub, "/in")
 
 
+def test_whose_first_message_is_still_looked_at_keeps_its_place(
+    names: LocalNames, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """It was as one that had sent nothing for a while, until the callback had ended."""
+    monkeypatch.setattr(crowd, "MOST", 1)
+    begun, over = threading.Event(), threading.Event()
+
+    def look(message: Any) -> None:
+        begun.set()
+        over.wait(HANG)
+
+    with (
+        Port("/in", names=names, callback=look) as port,
+        Port("/first", names=names) as first,
+    ):
+        first.connect("/in", "udp")
+        first.write(["hello"])
+        assert begun.wait(HANG)
+        assert greet(port.contact.port, 0).startswith(b"* there are too many inputs")
+        over.set()
+
+
 def link(**given: Any) -> Any:
     """An input over datagrams of this computer."""
     facts = {"vouched": False, "closing": False, "address": "127.0.0.1", "here": True, **given}
     peer = Peer(facts.pop("address"), facts.pop("here"))
-    counter = Counter(messages=facts.pop("messages", 0), last=facts.pop("last", 0.0))
+    counter = Counter(messages=facts.pop("messages", 0))
+    receiver = SimpleNamespace(heard=facts.pop("last", 0.0))
     return SimpleNamespace(
         carrier=SimpleNamespace(delivery=Delivery(connectionless=True)),
         driver=SimpleNamespace(admission=SimpleNamespace(peer=peer)),
         counter=counter,
+        receiver=receiver,
         **facts,
     )
 

@@ -85,6 +85,11 @@ class Receiver:
         self._unsent_acks = 0
         self._paced = 0.0  # when a message came whose pace is not measured yet; 0: none
 
+    @property
+    def heard(self) -> float:
+        """Return when the last message came, by time.perf_counter; 0.0: none has."""
+        return self._paced or self.counter.last
+
     # -- reading ----------------------------------------------------------------------------------
 
     def advance(self, deadline: float | None) -> Message:

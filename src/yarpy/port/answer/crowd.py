@@ -37,6 +37,5 @@ def room(links: Iterable[Inbound], peer: Peer) -> tuple[str, Inbound | None]:
 
 
 def _is_idle(link: Inbound) -> bool:
-    counter = link.counter
-    silent = not counter.messages or time.perf_counter() - counter.last > QUIET
+    silent = not link.counter.messages or time.perf_counter() - link.receiver.heard > QUIET
     return silent and not (link.vouched or link.closing)
