@@ -2,7 +2,7 @@
 
 python rclpy_node.py NAME
 
-    ["publish", TOPIC, PROFILE]          a publisher of texts; PROFILE is sensor, latched or default
+    ["publish", TOPIC, PROFILE]          a publisher of texts; PROFILE is one of those below
     ["say", TOPIC, TEXT]                 ... publishes one
     ["hear", TOPIC, PROFILE]             prints ["heard", TOPIC, TEXT] for what comes
     ["serve", NAME]                      answers SetBool with the opposite
@@ -22,7 +22,12 @@ from importlib import import_module
 
 import rclpy
 from rclpy.executors import ExternalShutdownException, SingleThreadedExecutor
-from rclpy.qos import DurabilityPolicy, QoSProfile, qos_profile_sensor_data
+from rclpy.qos import (
+    DurabilityPolicy,
+    QoSProfile,
+    ReliabilityPolicy,
+    qos_profile_sensor_data,
+)
 from std_msgs.msg import String
 from std_srvs.srv import SetBool
 
@@ -30,6 +35,12 @@ PROFILES = {
     "default": QoSProfile(depth=100),
     "sensor": qos_profile_sensor_data,
     "latched": QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL),
+    "kept": QoSProfile(depth=100, durability=DurabilityPolicy.TRANSIENT_LOCAL),
+    "echo": QoSProfile(  # of `ros2 topic echo --qos-durability transient_local` alone
+        depth=5,
+        durability=DurabilityPolicy.TRANSIENT_LOCAL,
+        reliability=ReliabilityPolicy.BEST_EFFORT,
+    ),
 }
 
 

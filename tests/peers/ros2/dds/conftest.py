@@ -8,6 +8,8 @@ from collections.abc import Iterator
 
 import pytest
 from support.dds_program import NodePeer, Peer
+from support.peer import brings
+from support.rclpy_program import Rclpy
 
 import yarpy
 from yarpy.names.default import DEFAULT
@@ -38,6 +40,13 @@ def node_peer(here: None) -> Iterator[NodePeer]:
 @pytest.fixture(scope="module")
 def peer(here: None) -> Iterator[Peer]:
     with Peer() as found:
+        yield found
+
+
+@pytest.fixture(scope="module")
+@brings("rclpy")
+def rclpy(here: None, request: pytest.FixtureRequest) -> Iterator[Rclpy]:
+    with Rclpy(f"rclpy_peer_{os.getpid()}") as found:  # others may run these tests meanwhile
         yield found
 
 

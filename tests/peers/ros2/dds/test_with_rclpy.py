@@ -2,16 +2,11 @@
 
 from __future__ import annotations
 
-import json
-import os
 from collections.abc import Iterator
-from pathlib import Path
 from typing import Any
 
 import pytest
-from support import rclpy_venv
-from support.peer import brings
-from support.process import Process
+from support.rclpy_program import Rclpy
 from support.wait import HANG, wait_until
 
 import yarpy
@@ -21,44 +16,7 @@ from yarpy.peers.ros2.message.library import hash_of
 from yarpy.peers.ros2.token import PUBLISHER
 
 STRING, FLAG = "std_msgs/msg/String", "std_srvs/srv/SetBool"
-PROGRAM = Path(rclpy_venv.__file__).with_name("rclpy_node.py")
 PROFILES = ("default", "sensor", "latched")
-
-
-class Rclpy(Process):
-    """The program `support/rclpy_node.py`, which does what it is told."""
-
-    def __init__(self, name: str) -> None:
-        python = rclpy_venv.prepare()
-        super().__init__(
-            [str(python), "-P", str(PROGRAM), name],
-            env={
-                "PATH": str(python.parent),
-                "ROS_AUTOMATIC_DISCOVERY_RANGE": "LOCALHOST",
-                "ROS_LOG_DIR": str(python.parent.parent / "log"),
-            },
-        )
-        self.name = f"/{name}"
-        self.wait_line("ready", stream="out", timeout=HANG)
-        self._asked = 0
-
-    def do(self, *words: object) -> Any:
-        """Have something done; return what it found."""
-        self._asked += 1
-        self.write_line(json.dumps(words))
-        found = self.wait_line(r'^\["done".*$', stream="out", count=self._asked, timeout=HANG)
-        return json.loads(found.string)[2]
-
-    def heard(self, topic: str) -> list[str]:
-        rows = [json.loads(line) for line in self.stdout.splitlines()]
-        return [row[2] for row in rows if row[:2] == ["heard", topic]]
-
-
-@pytest.fixture(scope="module")
-@brings("rclpy")
-def rclpy(here: None, request: pytest.FixtureRequest) -> Iterator[Rclpy]:
-    with Rclpy(f"rclpy_peer_{os.getpid()}") as found:  # others may run these tests meanwhile
-        yield found
 
 
 @pytest.fixture
