@@ -14,6 +14,7 @@ import yarpy
 from yarpy.limit import ZENOH_ATTACHMENT, ZENOH_PARAMETERS
 from yarpy.peers.zenoh import endpoint
 from yarpy.peers.zenoh.endpoint import Publisher, Server, Subscriber
+from yarpy.peers.zenoh.library import WAKE
 from yarpy.peers.zenoh.transport import share
 
 zenoh = pytest.importorskip("zenoh", reason='Zenoh: pip install "yarpy[zenoh]"')
@@ -226,6 +227,14 @@ def test_a_delete_is_a_message_where_it_is_asked_for(client: Any) -> None:
         message = reader.read(timeout=HANG)
         assert message.value == [yarpy.Vocab("delete")]
         assert message.source == "/zenoh://robot/gone"
+
+
+def test_what_only_wakes_a_reader_of_this_process_is_no_delete(client: Any) -> None:
+    with yarpy.BufferedPort("/in", strict=True) as reader, share() as shared:
+        reader.connect("zenoh+sub+delete://robot/*")
+        shared.session.delete("robot/topic", attachment=WAKE)
+        shared.session.delete("robot/gone")
+        assert reader.read(timeout=HANG).source == "/zenoh://robot/gone"
 
 
 def test_a_port_puts_with_a_priority(client: Any) -> None:

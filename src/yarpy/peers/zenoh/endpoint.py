@@ -27,7 +27,7 @@ from yarpy.peers.zenoh.carrier import (
     Outgoing,
 )
 from yarpy.peers.zenoh.exchange import undeclare
-from yarpy.peers.zenoh.library import CALLS, load
+from yarpy.peers.zenoh.library import CALLS, WAKE, load
 from yarpy.peers.zenoh.transport import SharedSession
 from yarpy.route import CarrierSpec, parse_carrier
 from yarpy.transports.inbox import Inbox
@@ -122,7 +122,7 @@ class Subscriber(Endpoint):
             said.attachment = b"0 %.6f" % when.get_time().timestamp()
         if sample.kind == load().SampleKind.PUT:
             said.payload, said.encoding = sample.payload.to_bytes(), str(sample.encoding)
-        elif DELETE in self._spec.tokens:
+        elif DELETE in self._spec.tokens and said.attachment != WAKE:
             said.event = DELETE
         else:
             return

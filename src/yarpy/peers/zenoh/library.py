@@ -17,6 +17,7 @@ from weakref import WeakSet
 from yarpy.errors import UnknownPlugin
 
 ENDING: Final = "the program ends"
+WAKE: Final = b"yarpy: look again"  # beside a delete that only wakes a reader of this process
 SHUTDOWN_GRACE: Final = 2.0  # seconds for threads to come back from Zenoh when the program ends
 
 

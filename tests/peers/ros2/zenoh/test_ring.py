@@ -15,7 +15,8 @@ import pytest
 from support.wait import HANG, runs, wait_until
 
 from yarpy.peers.ros2.zenoh import ring as module
-from yarpy.peers.ros2.zenoh.ring import SPARE, WAKE, Ring
+from yarpy.peers.ros2.zenoh.ring import SPARE, Ring
+from yarpy.peers.zenoh.library import WAKE
 from yarpy.peers.zenoh.transport import SharedSession, share
 
 zenoh = pytest.importorskip("zenoh", reason='Zenoh: pip install "yarpy[zenoh]"')

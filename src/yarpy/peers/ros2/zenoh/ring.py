@@ -3,10 +3,10 @@
 Where a callback in a thread of Zenoh hands a message to the thread that reads, two threads have to
 wake up one behind the other, and both need Python's lock; here one does.
 
-Rules: waits in Zenoh have no limit, so an alarm wakes who waits: it puts `WAKE` on the topic's own
-key, for this session alone. A reader that does not wait gets none, so none pushes a message out;
-there is one ring for a key in a session (`Participant.claim`), and whoever else hears the key there
-passes over what has that attachment.
+Rules: waits in Zenoh have no limit, so an alarm wakes who waits: by a delete of the topic's own key
+with the attachment `WAKE`, for this session alone. A reader that does not wait gets none, so none
+pushes a message out; there is one ring for a key in a session (`Participant.claim`), and whoever
+else hears the key there passes over what has that attachment.
 """
 
 from __future__ import annotations
@@ -19,11 +19,10 @@ from typing import Any, Final
 from yarpy import fork
 from yarpy.log import logger
 from yarpy.peers.zenoh.alarm import CLOCK
-from yarpy.peers.zenoh.library import CALLS
+from yarpy.peers.zenoh.library import CALLS, WAKE
 
 log = logger("yarpy.ros2")
 
-WAKE: Final = b"look"  # an attachment that no message has
 SPARE: Final = 4  # places beyond those for messages: WAKEs that came too late
 
 
@@ -81,18 +80,18 @@ class Ring:
             return
         try:
             if threading.current_thread() is threading.main_thread():  # also when the program ends
-                self._put()
+                self._send()
             else:
                 with CALLS:
-                    self._put()
+                    self._send()
         except Exception as error:  # the session is closed, which wakes everybody
             log.debug("not woken: %s", error)
 
-    def _put(self) -> None:
+    def _send(self) -> None:
         import zenoh
 
         local = zenoh.Locality.SESSION_LOCAL
-        self._session.put(self._key, b"", attachment=WAKE, allowed_destination=local)
+        self._session.delete(self._key, attachment=WAKE, allowed_destination=local)
 
     def undeclare(self) -> None:
         """Take it back; what waits there is lost."""

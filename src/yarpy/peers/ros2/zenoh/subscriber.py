@@ -24,8 +24,8 @@ from yarpy.peers.ros2.token import PUBLISHER, SUBSCRIBER, Token
 from yarpy.peers.ros2.zenoh.attachment import parse_attachment
 from yarpy.peers.ros2.zenoh.coalesced import Coalesced
 from yarpy.peers.ros2.zenoh.endpoint import Endpoint
-from yarpy.peers.ros2.zenoh.ring import WAKE, Ring
-from yarpy.peers.zenoh.library import CALLS
+from yarpy.peers.ros2.zenoh.ring import Ring
+from yarpy.peers.zenoh.library import CALLS, WAKE
 
 log = logger("yarpy.ros2")
 
