@@ -75,7 +75,7 @@ def add(thing: object, close: Close) -> None:
 
 
 def remove(thing: object) -> None:
-    """It was closed."""
+    """Forget a thing that was closed."""
     _open.pop(thing, None)
     hear_no_more()
 

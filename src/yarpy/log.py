@@ -76,7 +76,7 @@ def _call_handlers(call: Callable[..., None], found: logging.Logger, record: obj
 
 
 def _handlers(logger: logging.Logger | None) -> Iterator[logging.Handler]:
-    """Those that get its records."""
+    """Yield the handlers that get the records of a logger."""
     while logger is not None:
         yield from logger.handlers
         logger = logger.parent if logger.propagate else None

@@ -350,7 +350,7 @@ class Flag:
         self._lock.acquire()
 
     def set(self) -> None:
-        """It happens."""
+        """Let it happen."""
         self.is_set = True
         try:
             self._lock.release()

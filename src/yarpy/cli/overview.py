@@ -98,7 +98,7 @@ def row(flow: Flow) -> Row:
 
 
 def connections_json(snapshot: Snapshot) -> list[dict[str, Any]]:
-    """All that is known of connections, for programs."""
+    """Return what is known of each connection, for programs."""
     return [
         {
             "source": flow.source,
@@ -156,7 +156,7 @@ def _sum(flows: list[Flow]) -> str:
 
 
 def ports_json(snapshot: Snapshot) -> list[dict[str, Any]]:
-    """All that is known of ports, for programs."""
+    """Return what is known of each port, for programs."""
     return [{**asdict(port), "contact": str(port.contact)} for port in snapshot.ports.values()]
 
 

@@ -174,7 +174,7 @@ def fitted(laid: list[Cells], width: int) -> list[Cells]:
 
 
 def _cut_line(cells: Cells, width: int) -> Cells:
-    """On a screen where nothing fits, what comes first is shown."""
+    """Cut a line that does not fit; on a screen where nothing fits, what comes first is shown."""
     left: Cells = []
     for shown, column in cells:
         room = width - sum(len(one) + len(GAP) for one, _ in left)

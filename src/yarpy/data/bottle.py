@@ -69,7 +69,7 @@ class Bottle(ArrayExport, list[Any]):
         return default
 
     def check(self, key: str) -> bool:
-        """Is there a group of that name, or a value?"""
+        """Return whether there is a group of that name, or a value."""
         return self.group(key) is not None or self.find(key) is not None
 
     def group(self, key: str) -> Bottle | None:
@@ -176,7 +176,7 @@ class Property(Groups):
         return self.get(key, default)
 
     def check(self, key: str) -> bool:
-        """Is there such a key, with or without a value?"""
+        """Return whether there is such a key, with or without a value."""
         return key in self
 
     def update(self, *args: Any, **values: Any) -> None:

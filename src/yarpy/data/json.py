@@ -205,7 +205,8 @@ def _list(items: Sequence[Any], outer: Outer, depth: int) -> Any:
 
 
 def _is_object(items: Sequence[Any]) -> bool:
-    """More than one element, all of them pairs but perhaps the first, under different words."""
+    """Return whether these are more than one element, all of them pairs but perhaps the first,
+    under different words."""
     if len(items) < 2:
         return False
     keys = set()

@@ -65,7 +65,7 @@ class NameClient(Protocol):
         ...
 
     def list(self, prefix: str | None = None) -> Contacts:
-        """All ports, or those at and below `prefix`, by name."""
+        """Return all ports, or those at and below `prefix`, by name."""
         ...
 
     def close(self) -> None:

@@ -66,4 +66,4 @@ class LocalNames:
             return [*self._store.contacts(prefix or "")]
 
     def close(self) -> None:
-        """There are no connections to close."""
+        """Do nothing: there are no connections to close."""

@@ -226,7 +226,7 @@ class Serving:
                     delegate.announced(name)
 
     def _refusal(self, link: Inbound, words: Bottle) -> str:
-        """Why the peer may not give such a command; "" if it may."""
+        """Return why the peer may not give such a command; "" if it may."""
         admission = link.driver.admission
         if admission.open:
             return ""

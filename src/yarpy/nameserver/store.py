@@ -67,7 +67,7 @@ class Registration:
             self._contact = None
 
     def growth(self, key: str, values: list[str]) -> int:
-        """By how many characters `assign` would make this registration larger."""
+        """Return by how many characters `assign` would make this registration larger."""
         old = self.fields.get(key)
         return _size(key, values) - (_size(key, old) if old else 0)
 

@@ -231,7 +231,7 @@ class Topology:
     # --- looking
 
     def subscriptions(self, name: str = "") -> list[Subscription]:
-        """All rules, or those with `name` on one side, by source and destination."""
+        """Return all rules, or those with `name` on one side, by source and destination."""
         if name:
             found = set(self._out.get(name, {}).values())
             found.update(self._in.get(name, {}).values())

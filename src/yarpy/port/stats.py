@@ -17,7 +17,7 @@ class _Plain:
     __slots__ = ()
 
     def as_dict(self) -> dict[str, Any]:
-        """All numbers by name, as plain data; what is not counted is left out."""
+        """Return all numbers by name, as plain data; what is not counted is left out."""
         return {key: value for key, value in _plain(self).items() if value is not None}
 
 

@@ -110,7 +110,7 @@ class Transport:
         """Set the IP type-of-service byte (DSCP << 2) of outgoing packets, if there are any."""
 
     def tos(self) -> int:
-        """That byte, as the system has it."""
+        """Return that byte, as the system has it."""
         return 0
 
     def ended(self) -> bool:

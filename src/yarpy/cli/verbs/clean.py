@@ -74,7 +74,7 @@ def is_kept(contact: yarpy.Contact, own: tuple[str, int]) -> bool:
 
 
 def reason_of_death(contact: yarpy.Contact, timeout: float) -> str:
-    """Why nobody can reach this port, "" if somebody can or may."""
+    """Return why nobody can reach this port, "" if somebody can or may."""
     try:
         socket.create_connection((contact.host, contact.port), timeout).close()
     except ConnectionRefusedError:

@@ -88,7 +88,7 @@ def _print(snapshot: Snapshot, view: View, as_json: bool) -> None:
 
 
 def _live(sampler: Sampler, view: View) -> None:
-    """On a terminal, until `q`."""
+    """Show it on a terminal, until `q`."""
     from rich.console import Console
     from rich.live import Live
 

@@ -78,7 +78,7 @@ class Journal:
         os.fsync(self._file.fileno())
 
     def clear(self) -> None:
-        """All has been undone."""
+        """Empty the journal: all has been undone."""
         self._first.clear()
         self._file.truncate(0)
 

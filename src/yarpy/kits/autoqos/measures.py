@@ -69,7 +69,7 @@ def timing(flow: Flow, deadline: float, rate: float) -> tuple[Change, ...]:
 
 
 def carrier(flows: Iterable[Flow], wanted: str) -> tuple[Change, ...]:
-    """All flows over another carrier."""
+    """Return the changes that move all flows to another carrier."""
     return tuple(
         Change(flow.source, flow.target, "carrier", wanted, flow.carrier)
         for flow in flows
@@ -101,7 +101,7 @@ def limit(
 
 
 def changes_of(found: Iterable[Change], key: Key, pairs: set[tuple[str, str]]) -> list[Change]:
-    """Those of a key that concern these connections."""
+    """Return the changes of a key that concern these connections."""
     return [
         one
         for one in found

@@ -71,7 +71,8 @@ class Pair:
         return getattr(self.now, side) if self.now is not None else None
 
     def grown(self, side: str, key: str) -> int | None:
-        """By how much a counter of one end has grown between the looks; None: it does not count."""
+        """Return by how much a counter of one end has grown between the looks; None: it does not
+        count."""
         old = getattr(self.before, side, None)
         new = self.end(side)
         first, last = getattr(old, key, None), getattr(new, key, None)

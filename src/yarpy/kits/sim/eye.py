@@ -88,7 +88,7 @@ class Eye:
 
     @property
     def intrinsics(self) -> dict[str, Any]:
-        """Those of a pinhole camera, in pixels."""
+        """Return the parameters of a pinhole camera, in pixels."""
         lens = self._renderer.lens
         return {
             "physFocalLength": 0.0,

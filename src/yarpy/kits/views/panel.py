@@ -124,7 +124,7 @@ class Panel:
         }
 
     def others(self) -> list[str]:
-        """All robots whose control boards are registered. Raises NoNameServer."""
+        """Return all robots whose control boards are registered. Raises NoNameServer."""
         names = {contact.name for contact in self._names.list()}
         boards = {name.removesuffix("/rpc:i") for name in names if name.endswith("/rpc:i")}
         found = {board for board in boards if f"{board}/state:o" in names}

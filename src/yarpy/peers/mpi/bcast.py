@@ -193,7 +193,7 @@ class BcastReader(MpiEnd):
                 self._changed.notify_all()
 
     def _wait(self) -> None:
-        """Until the sender rings. Raises ConnectionResetError once it has died."""
+        """Wait until the sender rings. Raises ConnectionResetError once it has died."""
         if self._rings is None:
             self._rings = bool(self._line.hear(RINGING))
         while self._rings:
@@ -243,7 +243,7 @@ class BcastReader(MpiEnd):
         return True
 
     def wait_left(self) -> None:
-        """Until the sender has let this one go, or has died."""
+        """Wait until the sender has let this one go, or has died."""
         if self._thread is not None:
             self._thread.join()
 

@@ -156,7 +156,7 @@ class Group:
             return self._changed.wait_for(lambda: self._data is None or self.broken, seconds)
 
     def fail(self) -> None:
-        """All connections end."""
+        """End all connections."""
         with self._changed:
             self.broken = True
             self._changed.notify_all()

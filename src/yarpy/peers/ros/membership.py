@@ -136,7 +136,7 @@ class Membership:
         return (self.topic, self.name.category) == (other.topic, other.name.category)
 
     def tell_apart(self, number: int) -> None:
-        """It is one of several subscribers of the node to its topic, the `number`-th: it calls
+        """Note that it is the `number`-th of several subscribers of the node to its topic: it calls
         itself differently, since a publisher of rospy keeps one connection to each name."""
         hub = self.hub
         assert hub is not None
@@ -246,7 +246,7 @@ class Membership:
             ).start()
 
     def _chosen(self, due: list[_Publisher], now: float) -> list[_Publisher]:
-        """Those of them that are dialled now, marked so."""
+        """Return the publishers that are dialled now, marked so."""
         found: list[_Publisher] = []
         for item in due:
             host = self._hosts.setdefault(_host(item.uri), _Host())

@@ -142,7 +142,7 @@ class RosRobot(Closeable):
         return True, ""
 
     def _problem(self, model: str, names: Sequence[str], positions: Sequence[float]) -> str:
-        """Why it cannot be done; "" if it can."""
+        """Return why it cannot be done; "" if it can."""
         known = [joint.name for joint in self._joints]
         if model not in ("", self._model):
             return f"there is no model {model!r} here, only {self._model}"
@@ -199,7 +199,7 @@ def _configured() -> str:
 
 
 def _joints(robot: Robot) -> list[_Joint]:
-    """All joints, each with a name of its own: with its part's where two have the same."""
+    """Return all joints, each with a name of its own: with its part's where two have the same."""
     found: list[_Joint] = []
     boards = robot.parts.boards
     names = [name for board in boards.values() for name in board.axis_names]

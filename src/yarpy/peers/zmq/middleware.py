@@ -56,7 +56,8 @@ class ZeroMq:
 
 
 def addresses(way: Way) -> tuple[str, str]:
-    """Those of the broker's XPUB and XSUB. On this computer there is one from now on."""
+    """Return the addresses of the broker's XPUB and XSUB. On this computer there is one from now
+    on."""
     host, number = parse_place(way.place)
     if host in _LOCAL:
         keep_ready(host, number, number + 1)

@@ -76,7 +76,7 @@ class Reconnector:
     # -- what ports say ---------------------------------------------------------------------------
 
     def wake(self) -> None:
-        """There is a connection that gives no sign of its end: look at it soon."""
+        """Look soon at a connection that gives no sign of its end."""
         self._wake.wake()
 
     def watch(self, hub: Hub) -> None:

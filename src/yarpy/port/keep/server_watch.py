@@ -111,8 +111,8 @@ class _Watched:
         return time.monotonic() - self._since > limit
 
     def returned(self, connection: socket.socket) -> bool:
-        """It has been reached; whether it may lack our names: it had been away, or is watched only
-        from now on, and what came before was not seen."""
+        """Note that the server was reached; return whether it may lack our names: it had been away,
+        or is watched only from now on, and what came before was not seen."""
         old, self._connection = self._connection, connection
         self._since = time.monotonic()
         if old is not None:

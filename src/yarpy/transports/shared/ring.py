@@ -50,7 +50,7 @@ class _Ended(Segment):
         self.numbers = self.bytes.cast("i")
 
     def forget(self) -> None:
-        """It has no name."""
+        """Do nothing: it has no name."""
 
 
 _ENDED: Final = _Ended()

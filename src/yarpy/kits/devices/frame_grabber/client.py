@@ -161,7 +161,7 @@ class FrameGrabber(Closeable):
 
     @property
     def feature_switches(self) -> Features:
-        """On or off, by name."""
+        """The features that are on or off, by name."""
         return Features(self, "actv", "onof")
 
     def one_push(self, feature: str) -> None:

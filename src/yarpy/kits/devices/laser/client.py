@@ -58,7 +58,7 @@ class Laser(RemoteDevice[Scan]):
 
     @property
     def angles(self) -> tuple[float, float]:
-        """Of the first and the last range, degrees."""
+        """The angles of the first and the last range, degrees."""
         low, high = self._get("angles", 2)
         return float(low), float(high)
 

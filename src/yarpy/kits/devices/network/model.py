@@ -122,7 +122,7 @@ class Member:
         return self.sink_kind is not None
 
     def arguments(self, given: tuple[Any, ...], named: dict[str, Any]) -> tuple[Any, ...]:
-        """All arguments in their order. TypeError as a call of a function raises it."""
+        """Return all arguments in their order. Raises TypeError as a call of a function does."""
         if not named and len(given) == self.count:
             return given  # a tenth of a call is saved
         bound = self.signature.bind(None, *given, **named)

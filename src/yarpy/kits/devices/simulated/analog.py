@@ -22,7 +22,7 @@ class SimulatedAnalogSensor:
         return [value - shift for value, shift in zip(self._read(), self._shift, strict=True)]
 
     def states(self) -> list[str]:
-        """It works."""
+        """Return the state of each channel: all of them work."""
         return ["ok"] * len(self._shift)
 
     def calibrate(self, values: Sequence[float] | None = None) -> None:

@@ -140,7 +140,7 @@ class SimulatedDepthCamera:
         return self._accuracy
 
     def change_accuracy(self, accuracy: float) -> None:
-        """It is written down."""
+        """Keep the value; pictures stay as they are."""
         self._accuracy = accuracy
 
     def clip_planes(self) -> tuple[float, float]:

@@ -78,7 +78,7 @@ class SimulatedLaser:
         return [one if nearest <= one <= farthest else inf for one in seen]
 
     def condition(self) -> str:
-        """It works."""
+        """Return the condition of the scanner: it works."""
         return "in use"
 
 

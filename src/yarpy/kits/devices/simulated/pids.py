@@ -50,4 +50,4 @@ class SimulatedPids:
         self.gains = [Gains(*gains)._replace(offset=value) for gains, value in pairs]
 
     def reset(self, joints: Sequence[int]) -> None:
-        """There is no integral."""
+        """Do nothing: there is no integral."""

@@ -22,7 +22,7 @@ class _Speaker:
         self._language = "auto"
 
     def switch_language(self, language: str = "auto") -> None:
-        """It is written down."""
+        """Keep the value; sounds stay as they are."""
         self._language = language
 
     def language(self) -> str:
@@ -39,7 +39,7 @@ class SimulatedSynthesizer(_Speaker):
         self._speed = self._pitch = 0.0
 
     def switch_voice(self, voice: str = "auto") -> None:
-        """It is written down."""
+        """Keep the value; sounds stay as they are."""
         self._voice = voice
 
     def voice(self) -> str:
@@ -47,7 +47,7 @@ class SimulatedSynthesizer(_Speaker):
         return self._voice
 
     def change_speed(self, speed: float = 0.0) -> None:
-        """It is written down."""
+        """Keep the value; sounds stay as they are."""
         self._speed = speed
 
     def speed(self) -> float:
@@ -55,7 +55,7 @@ class SimulatedSynthesizer(_Speaker):
         return self._speed
 
     def change_pitch(self, pitch: float) -> None:
-        """It is written down."""
+        """Keep the value; sounds stay as they are."""
         self._pitch = pitch
 
     def pitch(self) -> float:

@@ -68,7 +68,7 @@ class SimulatedChatBot:
         return f"You said: {text}"
 
     def switch_language(self, language: str = "auto") -> None:
-        """It is written down."""
+        """Keep the value; answers stay as they are."""
         self._language = language
 
     def language(self) -> str:

@@ -86,11 +86,11 @@ class SimulatedWorld:
         return found.pose
 
     def enable_gravity(self, name: str, enable: bool) -> None:
-        """It is written down: nothing falls here."""
+        """Keep the value: nothing falls here."""
         self._thing(name).gravity = enable
 
     def enable_collision(self, name: str, enable: bool) -> None:
-        """It is written down."""
+        """Keep the value: nothing collides here."""
         self._thing(name).collision = enable
 
     def delete(self, name: str) -> None:

@@ -94,7 +94,7 @@ class TransformClient(Closeable):
         self._tell("clearAllRPC")
 
     def all(self) -> list[Transform]:
-        """All that is known."""
+        """Return all transforms that are known."""
         code, rest = split(self._ask(self._get, ["getTransformsRPC"]))
         if code != OK:
             raise LocalProtocolError(f'"{self.remote}" tells no transforms: {reason(code)}')

@@ -80,7 +80,7 @@ class Frames:
             self._known = {}
 
     def all(self) -> list[Transform]:
-        """All that is known."""
+        """Return all transforms that are known."""
         with self._lock:
             self._known = self._alive()
             return [*self._known.values()]
@@ -140,7 +140,7 @@ def pose(known: dict[str, Transform], frame: str, reference: str) -> NDArray[Any
 
 
 def matrix(given: Transform) -> NDArray[Any]:
-    """It as a 4 x 4 matrix."""
+    """Return a transform as a 4 x 4 matrix."""
     import numpy as np
 
     length = _length(given)

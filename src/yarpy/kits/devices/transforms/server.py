@@ -141,7 +141,7 @@ class Give(FrameTransformStorageGetRPC):
         return answer
 
     def getTransformsRPC(self) -> Transforms:
-        """All that is known."""
+        """Return all transforms that are known."""
         return Transforms(Status(OK), self._frames.all())
 
 

@@ -101,7 +101,7 @@ class Program:
         return not self._orphaned
 
     def finish(self) -> None:
-        """It has ended: tell the rest, and forget it."""
+        """Tell the rest of a program that has ended, and forget it."""
         while self.look():
             pass
         self._tell(self._output.read(whole=True))

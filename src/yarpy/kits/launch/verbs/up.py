@@ -307,7 +307,8 @@ def _at_once(supervisor: Supervisor) -> None:
 
 
 def _follow(supervisor: Supervisor, printer: _Printer, live: bool, stop_on_failure: bool) -> None:
-    """Until all has ended, or somebody wants it to; a screen that is gone is somebody, too."""
+    """Show the programs until all have ended, or somebody wants it to end; a screen that is gone is
+    somebody, too."""
 
     def over() -> bool:
         failed = stop_on_failure and bool(supervisor.failed)

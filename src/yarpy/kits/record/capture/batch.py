@@ -83,7 +83,7 @@ class Batch:
             self._give(queued)
 
     def lose(self) -> None:
-        """It is lost."""
+        """Count all its messages as lost."""
         for queued in self._messages:
             self._queue.lose(queued)
         self._settle()

@@ -200,7 +200,7 @@ class MessageQueue:
         return self.take()
 
     def free(self, size: int) -> None:
-        """So many bytes were written."""
+        """Note that so many bytes of the memory are free again."""
         with self._lock:
             self.held -= size
 

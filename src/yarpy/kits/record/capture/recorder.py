@@ -346,7 +346,7 @@ class Recorder:
                 ring.note(*note)
 
     def _look_around(self, clock: SystemClock, batch: Batch) -> None:
-        """Once a second: the disk, the folder, the clock, what was lost."""
+        """Look once a second at the disk, the folder, the clock, and what was lost."""
         self._losses.tell(self._output.note, self._tell, self._now())
         before, state = self._disk.state, self._disk.look()
         if state == "full":

@@ -71,7 +71,7 @@ class SingleFolder:
             self._part.tell(event(port, received, str(word)))
 
     def add_metadata(self, name: str, values: Mapping[str, str]) -> None:
-        """There is no place for it."""
+        """Do nothing: the format has no place for it."""
 
     def flush(self) -> None:
         """Hand everything to the system. Raises OSError."""

@@ -74,7 +74,7 @@ class DumperWriter:
             self._events.setdefault(port, []).append(line)
 
     def add_metadata(self, name: str, values: Mapping[str, str]) -> None:
-        """There is no place for it."""
+        """Do nothing: the format has no place for it."""
 
     def flush(self) -> None:
         """Hand everything to the system. Raises OSError."""

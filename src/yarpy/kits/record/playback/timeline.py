@@ -46,7 +46,7 @@ class Timeline:
         self._clock = None
 
     def jump(self, moment: int, clock: float) -> None:
-        """It is that moment now."""
+        """Set the moment that it is now."""
         self._moment = moment
         if self._clock is not None:
             self._clock = clock

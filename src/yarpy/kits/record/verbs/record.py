@@ -315,7 +315,7 @@ def facts(recorder: Recorder, status: Status) -> dict[str, object]:
 def _live(
     recorder: Recorder, began: float, duration: float | None, news: MutableSequence[str]
 ) -> None:
-    """On a terminal, until `q`."""
+    """Show it on a terminal, until `q`."""
     from rich.console import Console
     from rich.live import Live
 

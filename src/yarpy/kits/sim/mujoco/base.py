@@ -34,7 +34,7 @@ class Base:
         return [self.position()]
 
     def localization_status(self) -> str:
-        """It is always known."""
+        """Return the status in C++'s word: the pose is always known."""
         return "locy"
 
     def odometry(self) -> Odometry:

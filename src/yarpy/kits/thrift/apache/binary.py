@@ -174,7 +174,7 @@ class BinaryReader(Reader):
         return self.take(self.i32())
 
     def array(self, letter: str, count: int) -> Any:
-        """So many numbers as an array of that letter of the struct module."""
+        """Return so many numbers as an array of that letter of the struct module."""
         import numpy as np
 
         dtype = np.dtype(">" + letter)

@@ -231,7 +231,7 @@ class CompactReader(Reader):
         return self.take(self._varint(32))
 
     def array(self, letter: str, count: int) -> Any:
-        """So many numbers as an array of that letter of the struct module."""
+        """Return so many numbers as an array of that letter of the struct module."""
         import numpy as np
 
         dtype = np.dtype("<" + letter)

@@ -53,11 +53,11 @@ class Source:
             raise DecodeError(f"structs and containers are nested more than {THRIFT_LEVELS} deep")
 
     def leave(self) -> None:
-        """It ends."""
+        """Note that the innermost container or struct ends."""
         self._levels -= 1
 
     def spend(self, items: int) -> None:
-        """So many objects will be made."""
+        """Note that so many objects will be made."""
         self._items += items
         if self._items > THRIFT_ITEMS:
             raise DecodeError(f"a message has more than {THRIFT_ITEMS} values")

@@ -68,7 +68,7 @@ class Interface:
         return attribute(self.name, MODULES)
 
     def all(self) -> list[Interface]:
-        """Those that it includes, and it."""
+        """Return the interfaces that it includes, over others too, and itself as the last."""
         found: dict[int, Interface] = {}
         self._gather(found)
         return [*found.values()]

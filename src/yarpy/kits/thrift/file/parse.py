@@ -209,7 +209,7 @@ class _Reading:
         return str(token)
 
     def annotations(self, tree: Any) -> Annotations:
-        """Those among the children of something."""
+        """Return the annotations among the children of a node."""
         found: Annotations = {}
         for child in _all(tree, "annotations"):
             for each in child.children:

@@ -253,7 +253,7 @@ class Code:
         return replace(type_, name=name, inner=inner)
 
     def _prefix(self, wanted: Interface) -> str:
-        """By which names an included file is reached, also over others."""
+        """Return the names by which an included file is reached, also over others."""
         if not self._prefixes:
             ways = [*self.interface.includes.items()]
             for prefix, other in ways:  # grows; each file is looked at once

@@ -125,7 +125,7 @@ class ActionServer:
 
     @property
     def goals(self) -> list[Goal]:
-        """Those that are known: under way, or over not long ago."""
+        """Return the goals that are known: under way, or over not long ago."""
         with self.changed:
             return [*self._goals.values()]
 

@@ -78,7 +78,7 @@ class Packages:
 
     @classmethod
     def of(cls, environment: Mapping[str, str]) -> Packages:
-        """Those that a program of ROS with this environment would find."""
+        """Return the packages that a program of ROS with this environment would find."""
         roots = _paths(environment.get("ROS_PACKAGE_PATH", ""))
         prefixes = _paths(environment.get("CMAKE_PREFIX_PATH", ""))
         installed = sorted(Path("/opt/ros").glob("*"), reverse=True)

@@ -86,7 +86,7 @@ class Writer:
         return write
 
     def moved(self, size: str) -> None:
-        """So many bytes were written."""
+        """Note that so many bytes were written."""
 
     def displaced(self) -> None:
         """Something of unknown size was written."""

@@ -84,7 +84,7 @@ class Followed:
         return bool(found)
 
     def forget(self) -> None:
-        """There is another master, or the same one has been away."""
+        """Forget all values: there is another master, or the same one has been away."""
         self.change("/")
 
     def end(self) -> None:

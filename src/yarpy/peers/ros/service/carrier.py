@@ -177,7 +177,7 @@ class RosSrv(Carrier):
 
 
 def _reason(value: object) -> str | None:
-    """Why there is no answer: the text in `[fail] "text"`."""
+    """Return why there is no answer: the text in `[fail] "text"`."""
     if isinstance(value, Encoded):
         value = codec.decode(value.data)
     if isinstance(value, (list, tuple)) and value and _is_failure(value[0]):
