@@ -26,7 +26,7 @@ def test_descriptions_are_left_out() -> None:
     assert is_described(message([None]).as_(yarpy.Bottle))
     assert not is_described(message([1]).as_(yarpy.Bottle))
     assert line([None, (1, 2), 1j]) == "() (1 2) (0.0 1.0)"
-    assert line(np.array([[1, 2], [3, 4]])) == "((1 2) (3 4))"
+    assert line(np.array([[1, 2], [3, 4]], "i8")) == "((1 2) (3 4))"
     assert line([np.zeros((40, 2), "u1")]) == '"<array uint8 40x2>"'
 
 
