@@ -7,7 +7,7 @@ typedef i32 (yarp.type = "yarp::conf::vocab32_t") vocab
 /** The outcome of a call: ok, or err1 (failed) ... err7, miss. */
 struct Status { 1: vocab code }
 
-/** Where the frame `target` is, seen from `source`: metres, and a quaternion. */
+/** The pose of the frame `target`, seen from `source`: metres, and a quaternion. */
 struct Transform {
   1: string source, 2: string target,
   3: double time, 4: i8 constant,

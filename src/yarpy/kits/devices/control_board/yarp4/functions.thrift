@@ -25,14 +25,14 @@ struct PidDetails {
   13: string feed_forward
 }
 
-/** How a motor produces torque. */
+/** The parameters by which a motor produces torque. */
 struct TorqueParameters {
   1: double bemf, 2: double bemf_scale, 3: double ktau, 4: double ktau_scale,
   5: double viscous_positive, 6: double viscous_negative,
   7: double coulomb_positive, 8: double coulomb_negative, 9: double velocity_threshold
 }
 
-/** How a joint is calibrated. */
+/** The parameters by which a joint is calibrated. */
 struct Calibration {
   1: i32 kind, 2: double parameter1, 3: double parameter2, 4: double parameter3,
   5: double parameter4, 6: double parameter5, 7: double zero
