@@ -85,6 +85,7 @@ _read_i32 = Struct("<i").unpack_from
 _MAT: Final = 0x0074616D
 _KEY: Final = description.KEY.encode()
 _EMPTY: Final = Struct("<ii").pack(LIST, 0)
+_CLOUD: Final = CLOUD_HEAD.size
 _SOUND: Final = Struct("<3i").pack(LIST, 4, 0)
 _READ_SMALL: Final = (LIST, LIST + STRING)
 LISTS: Final = frozenset((list, tuple, Bottle))  # what `list_blocks` encodes, with a step less
@@ -265,7 +266,7 @@ def decode(view: Buffer, question: Question | None = None) -> Any:
                     from yarpy.data.sig.sound import Sound
 
                     return Sound.from_wire(view)
-        elif len(view) >= CLOUD_HEAD.size and _read_i32(view, 13)[0] == POINTS and cloud_size(view):
+        elif len(view) >= _CLOUD and _read_i32(view, 13)[0] == POINTS and cloud_size(view):
             return _cloud(view)
         elif count and (code == LIST + FLOAT64 or code == LIST + FLOAT32):
             return Vector.from_wire(view)
@@ -308,7 +309,7 @@ def decode_leading(buffer: bytes) -> tuple[Any, int] | None:
     if not 12 <= len(buffer) <= SMALL:
         return None
     code, count = _read_head(buffer)
-    if len(buffer) >= CLOUD_HEAD.size and _read_i32(buffer, 13)[0] == POINTS and cloud_size(buffer):
+    if (code != LIST or count == 1) and len(buffer) >= _CLOUD and cloud_size(buffer):
         return None
     if code - LIST in KEPT and count > 0:  # numbers alone, whose length their count says
         end = 8 + count * FIXED[code - LIST][1]

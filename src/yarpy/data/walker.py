@@ -10,9 +10,9 @@ are known by the tags that only it has; where there is none before a float32, th
 from __future__ import annotations
 
 from struct import Struct
-from typing import Protocol
+from typing import Final, Protocol
 
-from yarpy.data.sig.cloud_head import HEAD, cloud_size, is_likely_cloud, may_be_cloud
+from yarpy.data.sig.cloud_head import HEAD, POINTS, cloud_size, is_likely_cloud, may_be_cloud
 from yarpy.data.value import (
     BLOB,
     DICT,
@@ -24,6 +24,8 @@ from yarpy.data.value import (
 )
 from yarpy.data.yarp4 import ONLY_4, WIDTHS_3, WIDTHS_4
 from yarpy.errors import DecodeError
+
+_HEAD: Final = HEAD.size
 
 _read_i32 = Struct("<i").unpack_from
 _read_pair = Struct("<ii").unpack_from
@@ -92,11 +94,11 @@ class Walker:
         if not self._looked:
             if size < 8:
                 return 8
-            code, count = _read_pair(view, 0)
-            cloud = self._cloud(view, size, code, count)
-            if cloud:
-                return cloud
-            self._looked = size >= HEAD.size
+            if size < _HEAD or _read_i32(view, 13)[0] == POINTS:
+                cloud = self._cloud(view, size)
+                if cloud:
+                    return cloud
+            self._looked = size >= _HEAD
         if not self._begun:
             code, count = _read_pair(view, 0)
             if code == LIST and count == 4:
@@ -109,23 +111,24 @@ class Walker:
             self._open(code & UNIT_MASK, count)
         return self._walk(view, size)
 
-    def _cloud(self, view: Buffer, size: int, code: int, count: int) -> int:
+    def _cloud(self, view: Buffer, size: int) -> int:
         """The bytes of a PointCloud, or of its header while that is not all there; 0 for a message
         that is none, or that has to be read as a Bottle because it may be one that ends here.
         """
-        if size >= HEAD.size:
+        if size >= _HEAD:
             cloud = cloud_size(view)
             if cloud:
                 self._pos, self._owed = cloud, 0
                 self._check(cloud)
                 self.done = cloud <= size
             return cloud
+        code, count = _read_pair(view, 0)
         kind = code & UNIT_MASK
         width = self._widths.get(kind, 4 if kind in (STRING, BLOB) or kind in ONLY_4 else 0)
         if kind and not width:  # no Bottle has such a code
-            return HEAD.size if size < 12 or may_be_cloud(view) else 0
-        longer = 8 + count * (width or 5) >= HEAD.size
-        return HEAD.size if longer or is_likely_cloud(view) else 0
+            return _HEAD if size < 12 or may_be_cloud(view) else 0
+        longer = 8 + count * (width or 5) >= _HEAD
+        return _HEAD if longer or is_likely_cloud(view) else 0
 
     def _walk(self, view: Buffer, size: int) -> int:
         kinds, left = self._kinds, self._left
