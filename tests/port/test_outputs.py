@@ -3,11 +3,14 @@
 from __future__ import annotations
 
 import inspect
+import select
+import socket
 import sys
 from types import FrameType
 from typing import Any
 
-from support.wait import HANG
+import pytest
+from support.wait import HANG, wait_until
 
 import yarpy
 
@@ -33,6 +36,28 @@ def test_one_that_waits_for_slow_readers_or_not_applies_to_what_is_connected(
             out.strict = strict
             assert out.strict is strict and out._hub.outputs.newest is not strict
             assert link in out._hub.outputs.links
+
+
+@pytest.mark.skipif(
+    not hasattr(select, "poll"), reason="this system does not tell of an end behind unread bytes"
+)
+@pytest.mark.parametrize(
+    "asks", [b"CONNECT foo\r\nr\r\n", b"GET /?action=stream HTTP/1.1\r\nHost: 127.0.0.1\r\n\r\n"]
+)
+@pytest.mark.parametrize("says", [b"q\r\n", b"abc"])
+def test_the_end_of_a_reader_that_said_something_is_noticed_by_a_port_that_sends_nothing(
+    asks: bytes, says: bytes, names: yarpy.LocalNames
+) -> None:
+    """As a person with netcat does, who reads a while and says goodbye."""
+    with yarpy.Port("/out", names=names) as out:
+        with socket.create_connection(("127.0.0.1", out.contact.port)) as person:
+            person.sendall(asks)
+            assert out.wait_for_outputs(timeout=HANG)
+            person.sendall(says)
+            person.settimeout(HANG)
+            person.recv(100)  # what it sends a reader when that comes
+            assert len(out.outputs) == 1
+        wait_until(lambda: not out.outputs)
 
 
 def test_what_ends_is_counted_as_past_once(names: yarpy.LocalNames) -> None:

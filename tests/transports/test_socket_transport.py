@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import select
 import socket
 import sys
 import threading
@@ -48,6 +49,20 @@ def test_buffers_arrive_in_order_and_whole(pair: Pair, sizes: list[int]) -> None
     sender.start()
     assert receive(pair[1], sum(sizes)) == b"".join(buffers)
     sender.join(HANG)
+
+
+@pytest.mark.skipif(
+    not hasattr(select, "poll"), reason="this system does not tell of an end behind unread bytes"
+)
+def test_an_end_behind_what_nobody_has_read(pair: Pair) -> None:
+    left, right = pair
+    right.send([b"x"])
+    assert not left.hung_up()
+    right.close()
+    assert left.hung_up()
+    assert not left.ended()  # there is something to read
+    left.close()
+    assert not left.hung_up()
 
 
 def test_send_goes_on_where_the_kernel_stopped() -> None:

@@ -117,6 +117,11 @@ class Transport:
         """Return whether the peer has closed its side, without reading anything."""
         raise NotImplementedError
 
+    def hung_up(self) -> bool:
+        """Return whether the peer has closed its side behind bytes that nobody has read yet. Where
+        the system cannot tell, False."""
+        return False
+
     def taken(self, sent: int, received: int) -> tuple[int, bool] | None:
         """Return how many bytes the peer's system has confirmed, and whether the peer has hung up
         as one does that has read them all; None: nobody can say. `sent`, `received`: so many went

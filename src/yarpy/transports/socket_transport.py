@@ -191,6 +191,14 @@ class SocketTransport(Answerable):
             self.failed(error)
             return True
 
+    def hung_up(self) -> bool:
+        number = self.sock.fileno()
+        if _POLL is None or number < 0:
+            return False
+        poll = _POLL()
+        poll.register(number, _HANGS_UP)
+        return bool(poll.poll(0))
+
     def interrupt(self) -> None:
         if self._polling is not None:
             self._polling.interrupt()
@@ -207,6 +215,7 @@ MSG_DONTWAIT: int = int(getattr(socket, "MSG_DONTWAIT", 0))
 _MSG_PEEK: int = int(socket.MSG_PEEK) | MSG_DONTWAIT
 _POLL = getattr(select, "poll", None)  # not on Windows
 _READABLE: int = getattr(select, "POLLIN", 0)
+_HANGS_UP: int = getattr(select, "POLLRDHUP", 0)  # errors and POLLHUP are told of in any case
 _IOV_MAX = 512
 # So many bytes are sooner joined than walked through by the kernel as a list: of two or three
 # buffers, of more.

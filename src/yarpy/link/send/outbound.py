@@ -310,9 +310,14 @@ class Outbound:
             sender.look()  # unread acknowledgements hide the end behind them
         if self._listener is not None:
             self._listener.hear()
-        if not sender.broken and transport.ended():
+        if not sender.broken and (transport.ended() or (self._idle and transport.hung_up())):
             sender.fail()
         return sender.broken
+
+    @property
+    def _idle(self) -> bool:
+        """Return whether nothing is expected of the reader: what it said is said to nobody."""
+        return not (self.sender.window.open or self.sender.asking)
 
     def attend(self) -> None:
         """Hear what the reader says as soon as it does, in this thread, until the end."""
