@@ -1,4 +1,4 @@
-"""Why the system does not open a file, in words.
+"""The reason why the system does not open a file, in words.
 
     Linux, macOS    as the system says it
     Windows         a folder is "Permission denied" there, as is a file that others keep closed: it

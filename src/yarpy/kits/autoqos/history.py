@@ -19,7 +19,7 @@ FLOOD: Final = "flood"  # the measure against a critical connection that takes t
 
 
 class History:
-    """What a governor has changed, and what it has learned of its measures."""
+    """The changes that a governor has made, and the measures that rest."""
 
     def __init__(self) -> None:
         self._made: dict[tuple[str, str, str], Change] = {}

@@ -94,7 +94,7 @@ class Admission:
         return right not in (SCRIPT, RUN)
 
     def refusal(self, right: str, name: str = "") -> str:
-        """Why the peer may not do that, as it is told; "" if it may. It is logged, once."""
+        """Return why the peer may not do that, as it is told; "" if it may. It is logged once."""
         return ""
 
     def rights(self) -> list[str]:

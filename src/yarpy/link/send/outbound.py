@@ -132,7 +132,7 @@ class Outbound:
 
     @property
     def reason(self) -> str:
-        """Why it has ended."""
+        """The reason why it has ended."""
         return self.sender.reason or "the peer hung up"
 
     @property

@@ -1,4 +1,4 @@
-"""What a port says first to a broker: who it is, what is kept for it, and its will.
+"""The first words of a port to a broker: who it is, what is kept for it, and its will.
 
 Rules: pure. Version 3.1.1, which every broker understands; 5 for questions, sessions and delays of
 wills, and with `+v5`. Sessions are clean, unless `+session.SECONDS` says for how long the broker

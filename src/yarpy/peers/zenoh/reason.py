@@ -1,4 +1,4 @@
-"""Why a router of Zenoh could not be reached, found out by dialling it ourselves.
+"""The reason why a router of Zenoh could not be reached, found out by dialling it ourselves.
 
 Rules: what is found is an error to be raised, or shown: LinkClosed, or RemoteProtocolError where a
 certificate is the matter.
@@ -20,7 +20,7 @@ REFUSAL: Final = 0.5  # seconds within which a router says that it refuses a cer
 
 
 def reason(where: str) -> Exception:
-    """Why a router could not be reached, found out by dialling it ourselves."""
+    """Return why a router could not be reached, found out by dialling it ourselves."""
     kind, host, port = parts(where)
     if kind in ("quic", "udp") or not port.isdigit():
         return LinkClosed("no answer")

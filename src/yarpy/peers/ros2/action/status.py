@@ -34,7 +34,7 @@ class Status(IntEnum):
 
 
 class Refusal(IntEnum):
-    """Why a goal is not canceled."""
+    """The reason why a goal is not canceled."""
 
     NONE = 0
     REJECTED = 1
