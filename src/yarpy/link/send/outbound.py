@@ -298,10 +298,16 @@ class Outbound:
     # -- ending -----------------------------------------------------------------------------------
 
     def watch(self) -> bool:
-        """As `ended`, for whoever looks now and then while others send."""
+        """As `ended`, for whoever looks now and then while others send: also where the reader has
+        said something before that is said to nobody, since nothing is expected of it."""
+        sender, transport = self.sender, self.driver.transport
         if self.dialled:
-            self.driver.transport.spare_slow_reader()
-        return self.ended()
+            transport.spare_slow_reader()
+        if self.ended():
+            return True
+        if not (sender.window.open or sender.asking) and transport.hung_up():
+            sender.fail()
+        return sender.broken
 
     def ended(self) -> bool:
         """Return whether the peer has hung up, found out without sending anything."""
@@ -310,14 +316,9 @@ class Outbound:
             sender.look()  # unread acknowledgements hide the end behind them
         if self._listener is not None:
             self._listener.hear()
-        if not sender.broken and (transport.ended() or (self._idle and transport.hung_up())):
+        if not sender.broken and transport.ended():
             sender.fail()
         return sender.broken
-
-    @property
-    def _idle(self) -> bool:
-        """Return whether nothing is expected of the reader: what it said is said to nobody."""
-        return not (self.sender.window.open or self.sender.asking)
 
     def attend(self) -> None:
         """Hear what the reader says as soon as it does, in this thread, until the end."""
