@@ -48,6 +48,7 @@ def test_a_reader_that_takes_nothing(
         assert lasted(begun) < LIMIT + SLACK
         found = books(out)
         assert sum(found.values()) == written
+        wait_until(lambda: LINE.search(caplog.text))  # a busy machine's comes behind the limit
         [(target, lost, unsure)] = LINE.findall(caplog.text)
         assert target == "/in"
         assert int(unsure) == found["unconfirmed"]
