@@ -117,6 +117,7 @@ def test_every_kind_is_a_part_of_a_response(query: str, names: yarpy.LocalNames)
             return bool(came == yarpy.to_json(value, pixels="pixels" in query).encode() + b"\n")
 
         walk(out, arrived, same, () if not query else JSON_ALONE)
+        response.close()  # it has not ended, and holds the connection
         connection.close()
 
 
