@@ -1,12 +1,13 @@
 """Topics of ROS 2: a port against eclipse-zenoh alone, with the same bytes over the same router.
 
 Round trips between two programs, which do it in each way by turns, so that a busy machine is as
-unkind to each; a ratio compares medians of the same turn, and the middle one of these counts. Both
+unkind to each; a ratio compares medians of the same turn, and the middle one of these counts. Two
 ways without a port put finished CDR and an attachment, and copy out the bytes that come: `direct`
 hears inside Zenoh's own thread (`indirect=False`), where nothing may wait; `bare` hears as
-eclipse-zenoh does by default, who asks by `recv`, who answers by a function. `port` writes a value
-to a port and reads an object of the type from another. Then a flood of small messages to a program
-that counts them.
+eclipse-zenoh does by default, who asks by `recv`, who answers by a function. `by_hand` is `bare` in
+a program that has values, not bytes: it makes each message of a value and takes it apart again, by
+`struct`, `join` and `frombuffer`. `port` writes a value to a port and reads an object
+of the type from another. Then a flood of small messages to a program that counts them.
 
     python bench/ros2_topic.py [text | picture | flood] ...
 """
@@ -17,6 +18,7 @@ import contextlib
 import os
 import socket
 import statistics
+import struct
 import subprocess
 import sys
 import threading
@@ -38,13 +40,14 @@ from yarpy.peers.zenoh.transport import close, share
 TURNS = 40
 ANSWER = "answer"  # the word that starts the other program
 FLOOD = 20_000
+SHAPE = (480, 640, 3)
 TYPES = {"text": "std_msgs/msg/String", "picture": "sensor_msgs/msg/Image"}
 
 
 def value_of(what: str) -> Any:
     if what == "text":
         return "x" * 16
-    return yarpy.Image(np.zeros((480, 640, 3), "u1"))
+    return yarpy.Image(np.zeros(SHAPE, "u1"))
 
 
 def body_of(what: str) -> bytes:
@@ -56,25 +59,75 @@ def body_of(what: str) -> bytes:
     return b"".join(blocks)
 
 
+class Bytes:
+    """Messages are finished bytes, with one attachment for all."""
+
+    def __init__(self, what: str) -> None:
+        self.value: Any = body_of(what)
+        self._attached = attachment(1, 1, bytes(16))
+
+    def make(self, value: Any) -> tuple[bytes, bytes]:
+        """Return the message for a value, and its attachment."""
+        return value, self._attached
+
+    def read(self, sample: Any) -> Any:
+        """Return the value of a message."""
+        return sample.payload.to_bytes()
+
+
+class ByHand:
+    """Messages are made of a text or an array of pixels, and taken apart."""
+
+    def __init__(self, what: str) -> None:
+        self._number, self._text = 0, what == "text"
+        self._start = body_of(what)[: -SHAPE[0] * SHAPE[1] * SHAPE[2]]
+        self.value: Any = "x" * 16 if self._text else np.zeros(SHAPE, "u1")
+
+    def make(self, value: Any) -> tuple[bytes, bytes]:
+        """Return the message for a value, and its attachment."""
+        self._number += 1
+        now = time.time_ns()
+        attached = _ATTACHMENT.pack(self._number, now, 16, bytes(16))
+        if self._text:
+            data = value.encode()
+            return b"\0\1\0\0" + _LENGTH.pack(len(data) + 1) + data + b"\0", attached
+        stamp = _STAMP.pack(*divmod(now, 1_000_000_000))
+        return b"".join((self._start[:4], stamp, self._start[12:], value.data)), attached
+
+    def read(self, sample: Any) -> Any:
+        """Return the value of a message."""
+        _ATTACHMENT.unpack(sample.attachment.to_bytes())
+        data = sample.payload.to_bytes()
+        if self._text:
+            return data[8:-1].decode()
+        return np.frombuffer(data, "u1", offset=len(self._start)).reshape(SHAPE)
+
+
+_ATTACHMENT = struct.Struct("<qqB16s")
+_LENGTH = struct.Struct("<I")
+_STAMP = struct.Struct("<iI")
+
+
 def key(way: str, what: str) -> str:
     return str(key_of(0, f"/{way}_{what}", ros2.load(TYPES[what]), False))
 
 
 @contextlib.contextmanager
-def alone(what: str, answers: bool, direct: bool) -> Iterator[Callable[[], None]]:
+def alone(what: str, answers: bool, way: str) -> Iterator[Callable[[], None]]:
     """One side by eclipse-zenoh alone; what is returned makes a round trip."""
     from zenoh.handlers import Callback
 
     out, into = ("back", "there") if answers else ("there", "back")
-    way = "direct" if direct else "bare"
+    direct = way == "direct"
     come = threading.Semaphore(0)
-    body, attached = body_of(what), attachment(1, 1, bytes(16))
+    form = ByHand(what) if way == "by_hand" else Bytes(what)
     with share() as shared:
         publisher = shared.session.declare_publisher(key(f"{way}_{out}", what))
 
         def heard(sample: Any) -> None:
-            data = sample.payload.to_bytes()
+            value = form.read(sample)
             if answers:
+                data, attached = form.make(value)
                 publisher.put(data, attachment=attached)
             else:
                 come.release()
@@ -88,11 +141,12 @@ def alone(what: str, answers: bool, direct: bool) -> Iterator[Callable[[], None]
             hears = shared.session.declare_subscriber(where)
 
         def turn() -> None:
-            publisher.put(body, attachment=attached)
+            data, attached = form.make(form.value)
+            publisher.put(data, attachment=attached)
             if direct:
                 come.acquire()
             else:
-                hears.recv().payload.to_bytes()
+                form.read(hears.recv())
 
         yield turn
         hears.undeclare()
@@ -124,8 +178,7 @@ def port(what: str, answers: bool) -> Iterator[Callable[[], None]]:
 
 
 WAYS = {
-    "direct": partial(alone, direct=True),
-    "bare": partial(alone, direct=False),
+    **{way: partial(alone, way=way) for way in ("direct", "bare", "by_hand")},
     "port": port,
 }
 
@@ -163,7 +216,7 @@ def measure(what: str, count: int) -> None:
                 found[way].append(statistics.median(times) * 1e6)
     shown = "   ".join(f"{way} {statistics.median(times):.0f}" for way, times in found.items())
     ratios = []
-    for way in ("direct", "bare"):
+    for way in ("direct", "bare", "by_hand"):
         pairs = zip(found["port"], found[way], strict=True)
         ratios.append(f"{statistics.median(ours / base for ours, base in pairs):.2f} x {way}")
     print(f"{what:8} there and back, us: {shown}   port: {', '.join(ratios)}", flush=True)
