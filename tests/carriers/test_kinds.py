@@ -6,6 +6,7 @@ import http.client
 import json
 import sys
 from collections.abc import Callable
+from contextlib import ExitStack
 from typing import Any
 
 import pytest
@@ -90,12 +91,14 @@ def test_every_kind_is_an_answer(carrier: str, names: yarpy.LocalNames) -> None:
 
 @pytest.mark.parametrize("query", ["", "?format=json", "?sse", "?sse&pixels"])
 def test_every_kind_is_a_part_of_a_response(query: str, names: yarpy.LocalNames) -> None:
-    with yarpy.Port("/out", names=names) as out:
+    with ExitStack() as open_, yarpy.Port("/out", names=names) as out:
         connection = http.client.HTTPConnection(
             out.contact.host, out.contact.port, timeout=kinds.HANG
         )
+        open_.callback(connection.close)
         connection.request("GET", f"/r{query}")
         response = connection.getresponse()
+        open_.callback(response.close)  # it does not end, and holds the connection
         out.wait_for_outputs()
 
         def arrived() -> bytes:
@@ -117,8 +120,6 @@ def test_every_kind_is_a_part_of_a_response(query: str, names: yarpy.LocalNames)
             return bool(came == yarpy.to_json(value, pixels="pixels" in query).encode() + b"\n")
 
         walk(out, arrived, same, () if not query else JSON_ALONE)
-        response.close()  # it has not ended, and holds the connection
-        connection.close()
 
 
 def tells(found: dict[str, Any], cloud: yarpy.PointCloud, points: bool) -> bool:

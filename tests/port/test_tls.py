@@ -49,7 +49,9 @@ def recording(port: int) -> Iterator[tuple[int, bytearray, list[bool]]]:
             pass  # it has gone
 
     def serve(near: socket.socket) -> None:
-        with near, socket.create_connection(("127.0.0.1", port)) as far:
+        address = ("127.0.0.1", port)
+        # The port may be closed by then.
+        with near, suppress(ConnectionRefusedError), socket.create_connection(address) as far:
             back = threading.Thread(target=pump, args=(far, near), daemon=True)
             back.start()
             pump(near, far)
