@@ -217,7 +217,7 @@ class RpcClient(BasePort, Generic[T]):
         question that never left is asked again by itself. WrongPort when another port listens where
         it was, LocalProtocolError when no server is connected, PortClosed.
         """
-        hub = self._hub
+        hub = self._hub  # as `ask`, spelled out: a step less for every call
         if hub.life.closing or hub.life.interrupted:
             self._check_open()
         question = args[0] if len(args) == 1 and _is_message(args[0]) else Bottle(args)

@@ -202,6 +202,18 @@ def test_a_camera_that_is_a_topic_by_its_name(
     assert topics == {"/eye", "/icubSim/cam/right", "/icubSim/joint_states", "/tf"}
 
 
+def test_a_camera_whose_place_nobody_knows_names_no_frame(graph: RosGraph) -> None:
+    cameras = {"eye": icub_head((64, 48)).cameras["cam/left"]}
+    with (
+        Robot("/blind", Parts(cameras=cameras), names=yarpy.LocalNames()) as robot,
+        RosRobot(robot, graph.uri),
+        Node("/looks", master=graph.uri) as node,
+    ):
+        seen = node.subscriber("/blind/eye", "sensor_msgs/Image").take(timeout=HANG)
+        assert seen.header.frame_id == ""
+        assert "/tf" not in {topic for topic, nodes in graph.master.state()[0] if "/blind" in nodes}
+
+
 def test_a_name_that_ros_does_not_allow(graph: RosGraph) -> None:
     robot = Robot("/two-arms", Parts(), names=yarpy.LocalNames())
     with robot, pytest.raises(AddressError, match="no names like"):

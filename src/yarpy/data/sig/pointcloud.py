@@ -12,7 +12,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, Self
 
 from yarpy.data.pickling import Wired
-from yarpy.data.sig.cloud_head import HEAD, POINTS
+from yarpy.data.sig.cloud_head import HEAD, POINTS, SIZES
 from yarpy.errors import DecodeError, Truncated
 
 if TYPE_CHECKING:
@@ -29,9 +29,13 @@ class Kind:
 
     name: str
     code: int
-    size: int
     floats: dict[str, int]
     bytes: dict[str, int]
+
+    @property
+    def size(self) -> int:
+        """The bytes of a point."""
+        return SIZES[self.code]
 
     @property
     def dtype(self) -> np.dtype[Any]:
@@ -60,17 +64,16 @@ def _colour(at: int) -> dict[str, int]:
 KINDS = {
     kind.name: kind
     for kind in (
-        Kind("xy", 1, 8, {"x": 0, "y": 4}, {}),
-        Kind("xyz", 2, 16, _XYZ, {}),
-        Kind("normal", 33554528, 32, {**_normal(0), "curvature": 16}, {}),
-        Kind("xyz_rgba", 33554438, 32, _XYZ, _colour(16)),
-        Kind("xyz_i", 10, 32, {**_XYZ, "intensity": 16}, {}),
-        Kind("interest", 18, 32, {**_XYZ, "strength": 16}, {}),
-        Kind("xyz_normal", 33554530, 48, {**_XYZ, **_normal(16), "curvature": 32}, {}),
+        Kind("xy", 1, {"x": 0, "y": 4}, {}),
+        Kind("xyz", 2, _XYZ, {}),
+        Kind("normal", 33554528, {**_normal(0), "curvature": 16}, {}),
+        Kind("xyz_rgba", 33554438, _XYZ, _colour(16)),
+        Kind("xyz_i", 10, {**_XYZ, "intensity": 16}, {}),
+        Kind("interest", 18, {**_XYZ, "strength": 16}, {}),
+        Kind("xyz_normal", 33554530, {**_XYZ, **_normal(16), "curvature": 32}, {}),
         Kind(
             "xyz_normal_rgba",
             16777318,
-            48,
             {**_XYZ, **_normal(16), "curvature": 36},
             _colour(32),
         ),

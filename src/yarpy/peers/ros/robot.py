@@ -31,7 +31,7 @@ from yarpy.names.address import is_local
 from yarpy.peers.ros.graph_name import ros_name
 from yarpy.peers.ros.master import VARIABLE, RosMaster, parse_uri, uri_of
 from yarpy.peers.ros.node.node import Node
-from yarpy.peers.ros.transform.topic import MOVING, TYPE
+from yarpy.peers.ros.transform.topic import MOVING, TYPE, transform_of
 
 TRY: Final = """
 With ROS, whose master answers at {master}:
@@ -70,11 +70,13 @@ class RosRobot(Closeable):
         self._joints = _joints(robot)
         self._framed = robot.parts.frames
         self._stamp = Stamp()
+        framed = set() if self._framed is None else {each.name for each in self._framed.frames()[1]}
         with ExitStack() as resources:
             self.node = node = resources.enter_context(Node(robot.name, master=master))
             for part, port in robot.images.items():
                 if "@" not in port.name:  # else it is a topic already, by its name
-                    topic, frame = ros_name(f"{robot.name}/{part}"), self._frame(part)
+                    topic = ros_name(f"{robot.name}/{part}")
+                    frame = self._frame(part) if part in framed else ""  # else a view of nowhere
                     node.attach(port, topic, "sensor_msgs/Image", frame)
             if self._joints:
                 self._states = node.publisher("~joint_states", "sensor_msgs/JointState")
@@ -111,16 +113,11 @@ class RosRobot(Closeable):
         if self._framed is None or not self._places.outputs:
             return
         when, frames = self._framed.frames()
-        seconds, rest = divmod(round(when * 1e9), 1_000_000_000)
+        stamp = [*divmod(round(when * 1e9), 1_000_000_000)]
         made = []
-        for frame in frames:
-            place = {
-                "translation": dict(zip("xyz", frame.origin, strict=True)),
-                "rotation": dict(zip("xyzw", frame.orientation, strict=True)),
-            }
-            parent, child = self._frame(frame.parent), self._frame(frame.name)
-            header = {"stamp": [seconds, rest], "frame_id": parent}
-            made.append({"header": header, "child_frame_id": child, "transform": place})
+        for each in frames:
+            parent, child = self._frame(each.parent), self._frame(each.name)
+            made.append(transform_of(parent, child, each.origin, each.orientation, stamp))
         self._places.write({"transforms": made})
 
     def _boards(self) -> dict[Any, None]:

@@ -37,6 +37,20 @@ class Writes(Protocol):
         """Send a value."""
 
 
+def transform_of(
+    parent: str, child: str, at: Sequence[float], turned: Sequence[float], stamp: object
+) -> dict[str, Any]:
+    """Return the fields of a TransformStamped: `at` in meters, `turned` a quaternion x, y, z, w."""
+    return {
+        "header": {"stamp": stamp, "frame_id": parent},
+        "child_frame_id": child,
+        "transform": {
+            "translation": dict(zip("xyz", at, strict=True)),
+            "rotation": dict(zip("xyzw", turned, strict=True)),
+        },
+    }
+
+
 class Tree:
     """The part that both kinds of nodes share. `clock()` is the node's time, in seconds; `publish`
     makes a publisher of a topic, latched or not."""
@@ -86,14 +100,7 @@ class Tree:
         when = self._clock() if time is None else time
         self.buffer.put(parent, child, Pose((x, y, z), quaternion), when, fixed)
         seconds, rest = divmod(round(when * 1e9), 1_000_000_000)
-        made = {
-            "header": {"stamp": self.stamp(seconds, rest), "frame_id": parent},
-            "child_frame_id": child,
-            "transform": {
-                "translation": {"x": x, "y": y, "z": z},
-                "rotation": dict(zip("xyzw", quaternion, strict=True)),
-            },
-        }
+        made = transform_of(parent, child, (x, y, z), quaternion, self.stamp(seconds, rest))
         with self._lock:
             if fixed not in self._writers:
                 self._writers[fixed] = self._publish(FIXED if fixed else MOVING, fixed)
