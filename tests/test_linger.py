@@ -190,3 +190,13 @@ def test_names_have_a_moment_beyond_that_all_together():
         "linger.add('a', left)",
     )
     assert done.stdout.split() == ["0.0", "True"], done.stderr
+
+
+def test_what_is_closed_last_has_what_is_left_of_all_that():
+    done = run(
+        "os.environ[linger.SETTING] = '5'",
+        "print(linger.left())",
+        "linger.remove('first'), linger.remove('last')",
+        "linger.at_last(lambda: print(linger.LINGER < linger.left() < 5 + linger.NAMES))",
+    )
+    assert done.stdout.split() == ["5.0", "True"], done.stderr

@@ -126,6 +126,12 @@ def left_for_names() -> float:
     return max(0.0, _until - time.monotonic())
 
 
+def left() -> float:
+    """Return the seconds that something may take which is closed now: `seconds()`, and where the
+    program ends what is left of them, with those for names."""
+    return left_for_names() if _until else seconds()
+
+
 def suspends(thread: int) -> bool:
     """Return whether what `thread` was doing, such as closing something, goes on no more, since it
     is in our signal handler until `end` has done that."""

@@ -3,15 +3,24 @@
 from __future__ import annotations
 
 import os
+import signal
 import subprocess
 import sys
+import threading
+import time
+from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
-from support.wait import wait_until
+from support.port import free_port
+from support.wait import HANG, wait_until
 from support.zenoh_session import ask, listening
 
-from yarpy.peers.zenoh.transport import share
+from yarpy import linger
+from yarpy.peers.zenoh import transport
+from yarpy.peers.zenoh.library import Calls
+from yarpy.peers.zenoh.place import place
+from yarpy.peers.zenoh.transport import _Pool, share
 
 pytest.importorskip("zenoh", reason='Zenoh: pip install "yarpy[zenoh]"')
 
@@ -86,3 +95,70 @@ def test_a_forked_process_is_told_that_it_cannot(lone_router: str) -> None:
     command = [sys.executable, "-c", FORKING, lone_router]
     said = subprocess.run(command, check=True, timeout=30, capture_output=True, text=True).stdout
     assert "forked" in said and said.endswith("0\n")
+
+
+ROUTER = """
+import sys, time
+from yarpy.peers.zenoh.router import open_router
+router = open_router([sys.argv[1]])
+print("ready", flush=True)
+time.sleep(600)
+"""
+
+
+@pytest.fixture
+def stoppable() -> Iterator[tuple[str, subprocess.Popen[str]]]:
+    """A router in a process of its own, and its address."""
+    where = f"tcp/127.0.0.1:{free_port()}"
+    with subprocess.Popen(
+        [sys.executable, "-c", ROUTER, where], stdout=subprocess.PIPE, text=True
+    ) as process:
+        assert process.stdout is not None
+        assert process.stdout.readline() == "ready\n"
+        try:
+            yield where, process
+        finally:
+            process.kill()
+
+
+@pytest.mark.skipif(os.name != "posix", reason="stops a process as Unix does")
+@pytest.mark.parametrize("way", ["given back", "the end of the program"])
+def test_what_was_put_is_taken_before_the_session_is_closed(
+    stoppable: tuple[str, subprocess.Popen[str]], monkeypatch: pytest.MonkeyPatch, way: str
+) -> None:
+    monkeypatch.setenv("YARPY_LINGER", str(HANG))
+    where, router = stoppable
+    pool = _Pool()
+    writing = pool.take(place(where))
+    router.send_signal(signal.SIGSTOP)
+    publisher = writing.session.declare_publisher("settled/key")
+    for number in range(100):
+        publisher.put(b"%d" % number)
+        time.sleep(0.001)  # so that they go in many pieces
+    publisher.undeclare()
+    monkeypatch.setattr(transport, "CALLS", Calls())
+    monkeypatch.setattr(transport, "_POOL", pool)
+    ending = threading.Thread(target=writing.close if way == "given back" else pool.close)
+    ending.start()
+    ending.join(0.3)
+    assert not writing.session.is_closed()
+    router.send_signal(signal.SIGCONT)
+    ending.join(HANG)
+    linger.remove(pool)
+    assert not ending.is_alive() and writing.session.is_closed()
+
+
+@pytest.mark.skipif(os.name != "posix", reason="stops a process as Unix does")
+def test_a_router_that_stays_stopped_does_not_hold_up_the_end(
+    stoppable: tuple[str, subprocess.Popen[str]],
+    monkeypatch: pytest.MonkeyPatch,
+    caplog: pytest.LogCaptureFixture,
+) -> None:
+    monkeypatch.setenv("YARPY_LINGER", "0.2")
+    where, router = stoppable
+    shared = share(where)
+    session = shared.session
+    router.send_signal(signal.SIGSTOP)
+    shared.close()
+    assert session.is_closed()
+    assert "Zenoh's router may not have taken all: no answer in 0.2 s" in caplog.text

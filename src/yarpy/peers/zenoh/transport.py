@@ -5,7 +5,8 @@
 
 `share` says which session: all that name the same place (`zenoh_place`) use one, which is closed
 when the last of them gives it back, at the latest when the program ends: behind its threads and
-ports, which have something to say until then.
+ports, which have something to say until then. Before it is closed its router has taken all that was
+put: a router that sees the end of a connection forgets what it has not read yet.
 
 Rules: a session opens the computer to nobody, unless its place is `lan` or a file that says so: it
 is a client, does not listen, and looks for nobody by multicast. What is declared has callbacks of
@@ -22,6 +23,7 @@ from typing import TYPE_CHECKING, Any, Final, Self
 
 from yarpy import fork, linger
 from yarpy.errors import LinkClosed, LocalProtocolError, RemoteProtocolError
+from yarpy.log import logger
 from yarpy.peers.zenoh.config import client
 from yarpy.peers.zenoh.library import CALLS, ENDING, load, plain
 from yarpy.peers.zenoh.place import PORT, SETTING, Place, place
@@ -30,7 +32,10 @@ from yarpy.peers.zenoh.reason import reason
 if TYPE_CHECKING:
     import zenoh
 
+log = logger("yarpy.zenoh")
+
 DRAIN: Final = 0.05  # seconds in which callbacks that had begun come to their end
+NOBODY: Final = "@yarp/settled"  # a key at which nobody answers
 
 
 class SharedSession:
@@ -124,6 +129,7 @@ class _Pool:
                 return
         try:
             with CALLS:  # the program may not end meanwhile
+                _settle(held.session)
                 with self._lock:
                     if held.users or self._held.get(held.place) is not held:
                         return
@@ -140,6 +146,7 @@ class _Pool:
         with self._lock:
             all_, self._held = list(self._held.values()), {}
         for held in all_:
+            _settle(held.session)
             close(held.session)
         CALLS.wait()
         if all_:
@@ -174,6 +181,23 @@ def share(where: str = "") -> SharedSession:
     """
     load()
     return _POOL.take(place(where))
+
+
+def _settle(session: zenoh.Session) -> None:
+    """Wait until the router has taken all that was put: it answers a question behind it."""
+    zenoh, seconds = load(), linger.left()
+    settled = threading.Event()
+    try:
+        session.get(
+            NOBODY,
+            zenoh.handlers.Callback(lambda reply: None, settled.set, indirect=False),
+            priority=zenoh.Priority.BACKGROUND,  # behind all others
+            timeout=seconds,
+        )
+    except zenoh.ZError:
+        return  # it was closed
+    if not settled.wait(seconds):
+        log.warning("Zenoh's router may not have taken all: no answer in %.1f s", seconds)
 
 
 def close(session: zenoh.Session) -> None:
