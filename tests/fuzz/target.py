@@ -84,7 +84,7 @@ from yarpy.peers.zmq import zmtp
 from yarpy.peers.zmq.carrier import ROLES, Pub
 from yarpy.route import UNDECLARED, Declared, Route, parse_carrier
 from yarpy.testing import End
-from yarpy.testing.drive import Shelf, Stalled
+from yarpy.testing.drive import SimulatedMemory, Stalled
 from yarpy.wire.datagram import Assembler
 from yarpy.wire.message import CALL, DATA, Message, Packet
 from yarpy.wire.shared_stream import SharedStream
@@ -203,7 +203,7 @@ def _datagrams(data: bytes) -> None:
 def _references(data: bytes) -> None:
     """What comes beside a piece of shared memory."""
     end, carrier = End(piece=1 + len(data) % 97), Memory(Route("/w", "/r", "memory"))
-    end.stream = SharedStream(Shelf([bytes(20000)]), LIMIT)
+    end.stream = SharedStream(SimulatedMemory([bytes(20000)]), LIMIT)
 
     def read() -> Any:
         while True:

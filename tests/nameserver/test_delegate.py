@@ -7,7 +7,7 @@ from support.wait import wait_until
 import yarpy
 from yarpy import registry
 from yarpy.contact import Contact
-from yarpy.nameserver.delegate import Desk
+from yarpy.nameserver.delegate import DelegateContext
 from yarpy.shipped import SHIPPED
 
 
@@ -16,9 +16,9 @@ class Listener:
 
     about = "somebody who listens"
 
-    def __init__(self, place: str, desk: Desk) -> None:
+    def __init__(self, place: str, context: DelegateContext) -> None:
         self.place = place
-        self.desk = desk
+        self.context = context
         self.told: list[tuple[str, str]] = []
         self.closed = False
 
@@ -47,7 +47,7 @@ def test_a_plug_in_hears_of_ports_and_is_asked(plugged: None) -> None:
     with yarpy.NameServer(beside={"listener": "over there"}) as server:
         (delegate,) = server.delegates
         assert isinstance(delegate, Listener)
-        assert delegate.place == "over there" and delegate.desk.name == "/root"
+        assert delegate.place == "over there" and delegate.context.name == "/root"
         with yarpy.Port("/p"):
             assert ("registered", "/p") in delegate.told
             wait_until(lambda: ("announced", "/p") in delegate.told)  # told behind the answer

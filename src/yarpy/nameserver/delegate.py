@@ -1,9 +1,9 @@
 """Delegates: name services of other systems that a name server tells of its ports, and asks.
 
 Rules: contracts alone. A delegate is found by name (registry kind `delegates`): its plug-in is
-called as `open_delegate(place, desk)`, `place` being what the user says of where the other system
-is, "" for the usual place; it has an attribute `about` for people. None of the methods waits but
-`query`, which does so for a second or two at most, and `close`.
+called as `open_delegate(place, context)`, `place` being what the user says of where the other
+system is, "" for the usual place; it has an attribute `about` for people. None of the methods waits
+but `query`, which does so for a second or two at most, and `close`.
 """
 
 from __future__ import annotations
@@ -18,7 +18,7 @@ from yarpy.nameserver.command import NameService
 
 
 @dataclass(frozen=True, slots=True)
-class Desk:
+class DelegateContext:
     """The server's side that a delegate may use: the `service`, the server's own `name` and `host`,
     and `obey`, which carries out a command."""
 

@@ -28,7 +28,7 @@ from yarpy.names.address import is_loopback, local_addresses
 from yarpy.names.default import client_of, secret
 from yarpy.nameserver.collector import Collector
 from yarpy.nameserver.command import NameService
-from yarpy.nameserver.delegate import Delegate, Desk
+from yarpy.nameserver.delegate import Delegate, DelegateContext
 from yarpy.nameserver.folder import Folder
 from yarpy.nameserver.page import NamePage
 from yarpy.nameserver.reply import Reply, old
@@ -67,7 +67,7 @@ def _opened(portdb: str | Path | None, subdb: str | Path | None, cautious: bool)
     return Database(portdb or ":memory:", subdb or ":memory:", cautious=cautious)
 
 
-class _Desk(Mailbox):
+class _CommandMailbox(Mailbox):
     """Answers commands in the thread of the connection that brings them; early clients wait."""
 
     def __init__(self) -> None:
@@ -108,13 +108,13 @@ class Serving:
         beside: Mapping[str, str] | None,
     ) -> None:
         folder = Folder(web) if web is not None else None
-        desk = _Desk()
+        mailbox = _CommandMailbox()
         # Before anybody can call: it may be damaged.
         self._database = _opened(portdb, subdb, cautious)
         try:
             self.hub = open_hub(
                 name,
-                desk,
+                mailbox,
                 None,
                 tcp_port=port,
                 host=host,
@@ -162,7 +162,7 @@ class Serving:
             raise
         self.hub.callbacks.lines_for_people = self._page
         self.hub.callbacks.program.on_page = self._pages
-        desk.open(self._answer)
+        mailbox.open(self._answer)
 
     # -- commands ---------------------------------------------------------------------------------
 
@@ -290,9 +290,9 @@ class Serving:
     def _open_delegates(self, beside: Mapping[str, str]) -> None:
         from yarpy import registry
 
-        desk = Desk(self.service, self.name, self.host, self._obey)
+        context = DelegateContext(self.service, self.name, self.host, self._obey)
         for system, place in beside.items():
-            self.delegates.append(registry.delegates.load(system)(place, desk))
+            self.delegates.append(registry.delegates.load(system)(place, context))
         self.service.elsewhere = self._elsewhere if self.delegates else None
         for contact in self._contacts():  # of a database
             if contact.name != self.name and contact.carrier != "mcast":

@@ -49,29 +49,29 @@ class Handle:
         """Nothing to release."""
 
 
-class Shelf:
-    """A simulated piece of shared memory: a parcel is the number of its bytes in a list."""
+class SimulatedMemory:
+    """A simulated piece of shared memory: a payload is the number of its bytes in a list."""
 
     port = 1
 
-    def __init__(self, parcels: list[bytes]) -> None:
+    def __init__(self, payloads: list[bytes]) -> None:
         self.key = self
-        self._parcels = parcels
+        self._payloads = payloads
 
     def place(self, blocks: Iterable[Buffer], size: int) -> SimpleNamespace:
         """Keep a payload."""
-        self._parcels.append(b"".join(blocks))
-        return SimpleNamespace(slot=len(self._parcels) - 1, generation=1, offset=0, size=size)
+        self._payloads.append(b"".join(blocks))
+        return SimpleNamespace(slot=len(self._payloads) - 1, generation=1, offset=0, size=size)
 
-    def lend(self, parcel: object) -> int:
+    def lend(self, payload: object) -> int:
         """The peer may have it: from the only memory there is."""
         return 0
 
     def take(self, where: int, slot: int, generation: int, offset: int, size: int) -> memoryview:
         """A payload that was kept. Raises RemoteProtocolError for any other."""
-        if where or slot >= len(self._parcels) or offset + size > len(self._parcels[slot]):
+        if where or slot >= len(self._payloads) or offset + size > len(self._payloads[slot]):
             raise RemoteProtocolError("a payload that lies nowhere")
-        return memoryview(self._parcels[slot])[offset : offset + size]
+        return memoryview(self._payloads[slot])[offset : offset + size]
 
     def close(self) -> None:
         """Nothing to release."""
@@ -89,7 +89,7 @@ class End:
         self.stream = ByteStream(limit)
         self.outbox: list[Any] = []
         self.opened: list[Open] = []
-        self.parcels: list[bytes] = []  # what lies in memory that it shares
+        self.payloads: list[bytes] = []  # what lies in memory that it shares
         self.done = True
         self.result: Any = None
         self._steps: Steps[Any] | None = None
@@ -161,7 +161,7 @@ class End:
             return GROUP
         if isinstance(effect, Open):
             self.opened.append(effect)
-            return Shelf(self.parcels) if effect.kind == "memory" else Handle(effect)
+            return SimulatedMemory(self.payloads) if effect.kind == "memory" else Handle(effect)
         if isinstance(effect, Show | Within | May | Claim | Flush):
             return None  # no pages, all the time in the world, and no rules
         assert isinstance(effect, Switch)
@@ -191,7 +191,7 @@ class Dialogue:
         self.target = target
         self.initiator: End = End(piece, limit)
         self.acceptor: End = End(piece, limit)
-        self.acceptor.parcels = self.initiator.parcels
+        self.acceptor.payloads = self.initiator.payloads
         self.initiating = carrier(Route(source, target, carrier.name + modifiers, TCP_PORT))
         self.accepting: Carrier | None = None
         self.traffic: list[tuple[str, Any]] = []

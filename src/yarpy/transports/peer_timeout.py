@@ -5,7 +5,8 @@ connection `+peer_timeout.60` behind its carrier, which counts at both of its en
 Rules: the kernel notices, for both sides: keepalive where nothing is on its way, TCP_USER_TIMEOUT
 where something is. That option ends a connection to a reader that takes nothing for so long, too,
 although its host lives (RFC 5482 leaves this open; Linux does it): a strict writer has to wait for
-such a reader, so a Vigil looks after it in place of the kernel. Not every system has all of this.
+such a reader, so a ZeroWindowTimeout looks after it in place of the kernel. Not every system has
+all of this.
 """
 
 from __future__ import annotations
@@ -82,7 +83,7 @@ def notice_death(sock: socket.socket, timeout: float | None = None) -> None:
         pass  # the peer has gone already, as the first use tells
 
 
-class Vigil:
+class ZeroWindowTimeout:
     """Looks after the connection to a reader that takes nothing, now and then.
 
     While everything that was sent is acknowledged and more waits, the reader's window is closed,
@@ -94,7 +95,7 @@ class Vigil:
         self._timeout = timeout
         self._spared = False  # TCP_USER_TIMEOUT is off
 
-    def gives_up(self, sock: socket.socket) -> bool:
+    def expired(self, sock: socket.socket) -> bool:
         """Return whether the host of a reader that takes nothing does not answer either."""
         if sys.platform != "linux":
             return False

@@ -23,7 +23,7 @@ from yarpy.threads import Thread
 from yarpy.transports.base import Address
 from yarpy.transports.bind import listening_host
 from yarpy.transports.opener import CONNECT_TIMEOUT, Elsewhere, Opener
-from yarpy.transports.peer_timeout import Vigil, notice_death
+from yarpy.transports.peer_timeout import ZeroWindowTimeout, notice_death
 from yarpy.transports.socket_transport import SocketTransport
 from yarpy.transports.tcp_info import tcp_info
 
@@ -48,12 +48,12 @@ class TcpTransport(SocketTransport):
             sock.setsockopt(socket.IPPROTO_TCP, socket.TCP_NODELAY, 1)
             notice_death(sock)
             _limit_what_is_near(sock)
-        self._vigil = Vigil()
+        self._zero_window = ZeroWindowTimeout()
 
     def limit_silence(self, seconds: float) -> bool:
         if self.sock.family != getattr(socket, "AF_UNIX", None):
             notice_death(self.sock, seconds)
-            self._vigil = Vigil(seconds)
+            self._zero_window = ZeroWindowTimeout(seconds)
         return True
 
     def peek(self) -> int:
@@ -74,7 +74,9 @@ class TcpTransport(SocketTransport):
         return info.confirmed - self._origin, info.came == received + 1 and self.ended()
 
     def spare_slow_reader(self) -> None:
-        if self.sock.family != getattr(socket, "AF_UNIX", None) and self._vigil.gives_up(self.sock):
+        if self.sock.family != getattr(socket, "AF_UNIX", None) and self._zero_window.expired(
+            self.sock
+        ):
             self.interrupt()
 
     def limit_unsent(self, size: int) -> None:

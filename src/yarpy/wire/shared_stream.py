@@ -12,7 +12,7 @@ from yarpy.wire.aside_stream import AsideStream
 from yarpy.wire.stream import DEFAULT_LIMIT, Buffer
 
 
-class Parcel(Protocol):
+class SharedPayload(Protocol):
     """A payload in shared memory: `size` bytes from `offset`. It stays there for as long as the
     sender keeps this object, or a reader looks at it. `slot` and `generation` tell it from those
     before it."""
@@ -29,11 +29,11 @@ class SharedMemory(Protocol):
     key: object
     """The same for all connections that have the same memory."""
 
-    def place(self, blocks: Sequence[Buffer], size: int) -> Parcel | None:
+    def place(self, blocks: Sequence[Buffer], size: int) -> SharedPayload | None:
         """Take a payload in, copied unless it lies in shared memory already; None if there is no
         room."""
 
-    def lend(self, parcel: Parcel) -> int:
+    def lend(self, payload: SharedPayload) -> int:
         """The peer is about to be told of that payload: in which memory it lies, 16 bits; negative
         if it cannot have it."""
 

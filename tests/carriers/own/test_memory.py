@@ -13,7 +13,7 @@ from yarpy.carriers.own.tcp import Tcp
 from yarpy.errors import LocalProtocolError, RemoteProtocolError
 from yarpy.route import Route, parse_carrier
 from yarpy.testing import CarrierConformance, Dialogue, End
-from yarpy.testing.drive import Shelf, said
+from yarpy.testing.drive import SimulatedMemory, said
 from yarpy.wire import framing
 from yarpy.wire.message import Packet
 from yarpy.wire.shared_stream import SharedStream
@@ -44,7 +44,7 @@ def reference(
 def joined(kept: list[bytes]) -> tuple[Memory, SharedStream]:
     """A sender after its greeting."""
     end = End()
-    end.parcels = kept
+    end.payloads = kept
     carrier = Memory(Route("/out", "/in", "memory"))
     end.begin(carrier.greet(end.stream))
     assert end.take() == b"YARPYME1\x05\0\0\0/out\0" + struct.pack("<Q", 1)
@@ -75,11 +75,11 @@ def test_a_small_one_goes_as_over_tcp() -> None:
 
 def test_one_copy_for_several_connections() -> None:
     kept: list[bytes] = []
-    shelf = Shelf(kept)
+    memory = SimulatedMemory(kept)
     packet = Packet([bytes(20000)])
     for _ in range(3):
         carrier, stream = joined([])
-        carrier._memory = shelf
+        carrier._memory = memory
         assert carrier.prepare(packet)
         carrier.encode(stream, packet)
     assert len(kept) == 1
@@ -87,9 +87,9 @@ def test_one_copy_for_several_connections() -> None:
 
 def test_a_payload_in_memory_that_others_have_shown() -> None:
     carrier, stream = joined([])
-    shelf = Shelf([])
-    shelf.lend = lambda parcel: 0x103  # type: ignore[method-assign]
-    carrier._memory = shelf
+    memory = SimulatedMemory([])
+    memory.lend = lambda payload: 0x103  # type: ignore[method-assign]
+    carrier._memory = memory
     packet = Packet([bytes(20000)])
     carrier.encode(stream, packet)
     size = sum(map(len, packet.blocks))
@@ -98,18 +98,18 @@ def test_a_payload_in_memory_that_others_have_shown() -> None:
 
 def test_a_reader_that_cannot_have_it_gets_it_through_the_socket() -> None:
     carrier, stream = joined([])
-    shelf = Shelf([])
-    shelf.lend = lambda parcel: -1  # type: ignore[method-assign]
-    carrier._memory = shelf
+    memory = SimulatedMemory([])
+    memory.lend = lambda payload: -1  # type: ignore[method-assign]
+    carrier._memory = memory
     carrier.encode(stream, Packet([bytes(20000)]))
     assert b"".join(stream.take_output()) == b"".join(framing.encode(Packet([bytes(20000)])))
 
 
 def test_without_room_the_payload_goes_through_the_socket() -> None:
     carrier, stream = joined([])
-    shelf = Shelf([])
-    shelf.place = lambda blocks, size: None  # type: ignore[method-assign,assignment,return-value]
-    carrier._memory = shelf
+    memory = SimulatedMemory([])
+    memory.place = lambda blocks, size: None  # type: ignore[method-assign,assignment,return-value]
+    carrier._memory = memory
     packet = Packet([bytes(20000)])
     carrier.encode(stream, packet)
     assert b"".join(stream.take_output()) == b"".join(framing.encode(Packet([bytes(20000)])))
@@ -203,7 +203,7 @@ BAD = {
 @pytest.mark.parametrize("piece", [1, 100])
 @pytest.mark.parametrize("data", BAD.values(), ids=BAD.keys())
 def test_bad_references(data: bytes, piece: int) -> None:
-    stream = SharedStream(Shelf([bytes(20000)]))
+    stream = SharedStream(SimulatedMemory([bytes(20000)]))
     pieces = [data[at : at + piece] for at in range(0, len(data), piece)]
     with pytest.raises(RemoteProtocolError):
         run(Memory(Route("/a", "/b")).decode(stream), stream, pieces)
@@ -216,7 +216,7 @@ def test_a_reference_on_a_connection_without_memory() -> None:
 
 
 def test_the_limit_of_a_port_holds_for_what_lies_in_memory() -> None:
-    stream = SharedStream(Shelf([bytes(20000)]), limit=10000)
+    stream = SharedStream(SimulatedMemory([bytes(20000)]), limit=10000)
     with pytest.raises(RemoteProtocolError, match="the limit is 10000"):
         run(Memory(Route("/a", "/b")).decode(stream), stream, [reference()])
 

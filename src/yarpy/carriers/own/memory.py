@@ -32,7 +32,7 @@ from yarpy.route import parse_carrier
 from yarpy.wire import framing
 from yarpy.wire.effects import Open, Switch
 from yarpy.wire.message import Message, Packet
-from yarpy.wire.shared_stream import Parcel, SharedMemory, SharedStream
+from yarpy.wire.shared_stream import SharedMemory, SharedPayload, SharedStream
 from yarpy.wire.steps import Steps
 from yarpy.wire.stream import LARGE, ByteStream
 
@@ -132,35 +132,42 @@ class Memory(Indexed):
             stream.output += framed
             return
         memory, blocks = self._memory, packet.blocks
-        parcel = None
+        payload = None
         if memory is not None and (len(blocks) > 1 or len(blocks[0]) >= LARGE):
-            parcel = self._placed(packet)
-        where = -1 if parcel is None or memory is None else memory.lend(parcel)
-        if parcel is None or where < 0:
+            payload = self._placed(packet)
+        where = -1 if payload is None or memory is None else memory.lend(payload)
+        if payload is None or where < 0:
             stream.write(*framing.encode(packet))
             return
         envelope = packet.envelope
-        numbers = (where, parcel.slot, parcel.generation, len(envelope), parcel.offset, parcel.size)
+        numbers = (
+            where,
+            payload.slot,
+            payload.generation,
+            len(envelope),
+            payload.offset,
+            payload.size,
+        )
         stream.write(_REFERENCE.pack(_MARK, packet.key.encode(), *numbers) + envelope)
         if isinstance(stream, SharedStream):
-            stream.aside += parcel.size
+            stream.aside += payload.size
 
-    def _placed(self, packet: Packet) -> Parcel | None:
+    def _placed(self, packet: Packet) -> SharedPayload | None:
         """A large payload in shared memory, put there once for all connections of the port."""
         memory, framed = self._memory, packet.framed
         if memory is None or (framed is not None and len(framed) == 1):
             return None
         forms = packet.forms
-        parcel: Parcel | None = forms.get(memory.key)
-        if parcel is None:
+        payload: SharedPayload | None = forms.get(memory.key)
+        if payload is None:
             blocks = packet.blocks
             size = sum(map(len, blocks))
             if size < LARGE or len(packet.envelope) > framing.MAX_COMMAND:
                 return None
-            parcel = memory.place(blocks, size)
-            if parcel is not None:
-                forms[memory.key] = parcel
-        return parcel
+            payload = memory.place(blocks, size)
+            if payload is not None:
+                forms[memory.key] = payload
+        return payload
 
     def parse(self, stream: ByteStream) -> Message | None:
         if stream.buffer[stream.head]:

@@ -24,7 +24,7 @@ from yarpy.names.address import is_local
 from yarpy.names.default import secret
 from yarpy.names.node_name import PUBLISHER, SERVER, SUBSCRIBER, NodeName, parse_node_name
 from yarpy.nameserver.command import NameService
-from yarpy.nameserver.delegate import Desk
+from yarpy.nameserver.delegate import DelegateContext
 from yarpy.peers.ros.graph_name import check_graph_name, master_type
 from yarpy.peers.ros.master import (
     DEFAULT_URI,
@@ -232,7 +232,7 @@ class RosDelegate:
                 self._tell(name)
 
 
-def open_delegate(place: str, desk: Desk) -> RosDelegate:
+def open_delegate(place: str, context: DelegateContext) -> RosDelegate:
     """Tell and ask the master at `place`, or that of ROS_MASTER_URI. Raises AddressError if the
     environment names none."""
     uri = place or os.environ.get(VARIABLE, "")
@@ -240,7 +240,7 @@ def open_delegate(place: str, desk: Desk) -> RosDelegate:
         raise AddressError(f"--ros needs {VARIABLE}: export {VARIABLE}={DEFAULT_URI}")
     if not RosMaster(uri, TIMEOUT).answers():
         log.warning("no ROS master answers at %s yet; it is asked again for every name", uri)
-    return RosDelegate(RosMaster(uri), desk.service)
+    return RosDelegate(RosMaster(uri), context.service)
 
 
 def _member(name: str) -> NodeName | None:

@@ -23,7 +23,7 @@ from yarpy.link.begin.admission import peer_of
 from yarpy.log import logger
 from yarpy.names.address import is_local
 from yarpy.nameserver.command import NameService
-from yarpy.nameserver.delegate import Desk
+from yarpy.nameserver.delegate import DelegateContext
 from yarpy.peers.zenoh.address import host_zid
 from yarpy.peers.zenoh.gateway import Gateway, bring
 from yarpy.peers.zenoh.names import ZenohNames
@@ -130,8 +130,8 @@ class ZenohDelegate:
         bring(pipe, contact.host, contact.port)
 
 
-def open_delegate(place: str, desk: Desk) -> ZenohDelegate:
+def open_delegate(place: str, context: DelegateContext) -> ZenohDelegate:
     """Tell and ask names on Zenoh at `place`, as in YARPY_ZENOH. Raises NoNameServer."""
-    names = ZenohNames(place, desk.name)
+    names = ZenohNames(place, context.name)
     names.open()
-    return ZenohDelegate(names, desk.service, desk.obey, desk.host)
+    return ZenohDelegate(names, context.service, context.obey, context.host)

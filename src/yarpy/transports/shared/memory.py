@@ -96,7 +96,7 @@ class MemoryTransport(UnixTransport):
         """No memory of ours is shared here."""
         return None
 
-    def lend(self, parcel: Placed) -> int:
+    def lend(self, payload: Placed) -> int:
         """No memory of ours is shared here."""
         return NOWHERE
 
@@ -166,16 +166,16 @@ class SendingTransport(MemoryTransport):
         no room."""
         return None if self._arena is None else self._arena.place(blocks, size)
 
-    def lend(self, parcel: Placed) -> int:
+    def lend(self, payload: Placed) -> int:
         """The reader is about to be told of it: in which memory."""
         arena, reader = self._arena, self._reader
         if arena is None or reader is None:
             return NOWHERE
-        if not arena.lend(parcel, reader):
+        if not arena.lend(payload, reader):
             return NOWHERE
-        where = 0 if parcel.source is arena else self._show(parcel.source)
+        where = 0 if payload.source is arena else self._show(payload.source)
         if where < 0:
-            arena.recall(parcel, reader)
+            arena.recall(payload, reader)
         return where
 
     def _show(self, source: Source) -> int:

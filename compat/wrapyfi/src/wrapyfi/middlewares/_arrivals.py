@@ -49,7 +49,7 @@ class Arrivals:
         self._inbox.close()
 
 
-class Desk:
+class RequestQueue:
     """Where requests wait, each in the thread that brought it, until the program takes them."""
 
     def __init__(self, topic: str) -> None:

@@ -16,7 +16,7 @@ from typing import Any
 
 import yarpy
 import yarpy.peers.ros
-from wrapyfi.middlewares._arrivals import Arrivals, Desk
+from wrapyfi.middlewares._arrivals import Arrivals, RequestQueue
 from wrapyfi.middlewares._ros import (
     FieldedService,
     Interfaces,
@@ -227,9 +227,9 @@ def _service(side: Any) -> Any:
     return _BareService("ROSNativeObject", "46a550fd1ca640b396e26ebf988aed7b", TextForm.type)
 
 
-class _Serving(Desk, _Use):
+class _Serving(RequestQueue, _Use):
     def __init__(self, side: Any) -> None:
-        Desk.__init__(self, side.out_topic)
+        RequestQueue.__init__(self, side.out_topic)
         _Use.__init__(self, side.options)
         self._service = _service(side)
         try:

@@ -18,7 +18,7 @@ from importlib.util import find_spec
 from typing import Any
 
 import yarpy
-from wrapyfi.middlewares._arrivals import Arrivals, Desk
+from wrapyfi.middlewares._arrivals import Arrivals, RequestQueue
 from wrapyfi.middlewares._ros import (
     FieldedService,
     Interfaces,
@@ -150,7 +150,7 @@ def _service(side: Any) -> tuple[str, FieldedService]:
     return name, FieldedService(default_library().service(name))
 
 
-class _Serving(Desk):
+class _Serving(RequestQueue):
     def __init__(self, side: Any) -> None:
         super().__init__(side.out_topic)
         name, self._service = _service(side)

@@ -28,7 +28,7 @@ T = TypeVar("T")
 _TEMPORARY: Final = (CELLS.index("temporary obstacle"), CELLS.index("enlarged obstacle"))
 
 
-class _Shelf(Generic[T]):
+class _Table(Generic[T]):
     """The named things of one kind."""
 
     def __init__(self, what: str, most: int) -> None:
@@ -87,21 +87,21 @@ class MapStorage:
         collection: str = "maps_collection.ini",
         names: str = "locations.ini",
     ) -> None:
-        self._maps: _Shelf[Grid] = _Shelf("map", MAP_GRIDS)
+        self._maps: _Table[Grid] = _Table("map", MAP_GRIDS)
         self._compress = False
         self.map_names, self.remove_map = self._maps.names, self._maps.delete
         self.clear_maps = self._maps.clear
-        self._shelves: dict[str, _Shelf[Any]] = {}
+        self._tables: dict[str, _Table[Any]] = {}
         for one, many in _KINDS:
-            shelf = self._shelves[many] = _Shelf(one, MAP_NAMES)
+            table = self._tables[many] = _Table(one, MAP_NAMES)
             members: dict[str, Callable[..., Any]] = {
-                f"store_{one}": shelf.store,
-                one: shelf.get,
-                f"{one}_names": shelf.names,
-                many: shelf.all,
-                f"rename_{one}": shelf.rename,
-                f"delete_{one}": shelf.delete,
-                f"clear_{many}": shelf.clear,
+                f"store_{one}": table.store,
+                one: table.get,
+                f"{one}_names": table.names,
+                many: table.all,
+                f"rename_{one}": table.rename,
+                f"delete_{one}": table.delete,
+                f"clear_{many}": table.clear,
             }
             self.__dict__.update(members)
         self._collection, self._names = collection, names
@@ -171,13 +171,13 @@ class MapStorage:
     def load_names(self, file: str) -> None:
         """Read what has a name in a file."""
         found = self._files.names(file)
-        for many, shelf in self._shelves.items():
+        for many, table in self._tables.items():
             for name, value in getattr(found, many).items():
-                shelf.store(name, value)
+                table.store(name, value)
 
     def save_names(self, file: str) -> None:
         """Write all that has a name."""
-        found = MapNames(**{many: shelf.named() for many, shelf in self._shelves.items()})
+        found = MapNames(**{many: table.named() for many, table in self._tables.items()})
         self._files.keep_names(found, file)
 
     def reload_names(self) -> None:
