@@ -89,8 +89,11 @@ BROUGHT = {
     ("peers/ros/service/method.py", "kits.wrap"),
     ("peers/zmq/broker.py", "kits.wrap"),
     ("peers/zmq/link.py", "kits.wrap"),
-    ("peers/ros/robot.py", "kits.sim"),
-    ("peers/ros/robot.py", "kits.devices"),
+    *(
+        (f"peers/{name}.py", kit)
+        for name in ("ros/robot", "ros/robot_state", "ros2/robot")
+        for kit in ("kits.sim", "kits.devices")
+    ),
 }
 # The files that can be compiled.
 _TREE = ast.parse((ROOT / "hatch_build.py").read_text("utf-8"))

@@ -338,7 +338,10 @@ SHIPPED: Final[Mapping[str, Mapping[str, Row]]] = {
     # Types of devices in the files of robots (`kits/launch/robot/contract.py`).
     "devices": DEVICES,
     # Graphs in which a simulated robot is shown, too (`kits/sim/guest.py`).
-    "robots": _table(Row("ros", f"{_PEERS}.ros.robot:RosGuest")),
+    "robots": _table(
+        Row("ros", f"{_PEERS}.ros.robot:RosGuest"),
+        Row("ros2", f"{_PEERS}.ros2.robot:Ros2Guest"),
+    ),
     # What ports may be part of beside their connections; it has ports of its own, too.
     "graphs": GRAPHS,
     # What typed clients call with: `yarpy.idl` is pure, and so below all ports.

@@ -2,6 +2,8 @@
 
     python ros2_peer.py PORT hear TOPIC            prints what is published, as JSON;
                                                    say=TOPIC publishes lines beside it
+    python ros2_peer.py PORT show TOPIC            prints the fields of what is published; wants
+                                                   type=, hash=, definition=
     python ros2_peer.py PORT say TOPIC             publishes the lines of its input
     python ros2_peer.py PORT serve NAME            adds two numbers for whoever asks
     python ros2_peer.py PORT call NAME             asks for the sums of the lines of its input
@@ -87,6 +89,14 @@ def _plain(value: Any) -> Any:
     return value.tolist() if hasattr(value, "tolist") else value
 
 
+def _fields(value: Any) -> Any:
+    """A message as JSON has it."""
+    if hasattr(value, "__dataclass_fields__"):
+        names = [name for name in value.__dataclass_fields__ if name[0] != "_"]
+        return {name: _fields(getattr(value, name)) for name in names}
+    return [*map(_fields, value)] if isinstance(value, list) else _plain(value)
+
+
 def _action_service(sdk: Any, name: str, what: str, where: dict[str, Any]) -> Any:
     """Half of an action server: what it is told is printed; the result is 0, 1, 1 of any goal."""
     import numpy as np
@@ -134,6 +144,12 @@ def main(port: int, verb: str, name: str, options: dict[str, str]) -> None:
         _say("ready")
         for line in sys.stdin:
             also.publish(data=line.rstrip("\n"))  # type: ignore[union-attr]
+        node.close()
+    elif verb == "show":
+        topic["msg_definition"] = options["definition"]
+        node = sdk.ROS2Subscriber(name, kind, lambda message: _say(_fields(message)), **topic)
+        _say("ready")
+        sys.stdin.read()
         node.close()
     elif verb == "say":
         publisher = sdk.ROS2Publisher(name, kind, **topic)

@@ -96,7 +96,7 @@ def test_rospy_sees_pictures_and_joints(graph: RosGraph, robot: Robot) -> None:
         assert "Type: sensor_msgs/Image" in info and "* /icubSim (http" in info
         assert "/icubSim/set_model_configuration" in graph.tool("rosservice", "list").split()
     assert "/icubSim" not in graph.tool("rosnode", "list").split()
-    assert not any(port.closed for port in robot.images.values())
+    assert not any(camera.images.closed for camera in robot.cameras.values())
 
 
 def test_rospy_moves_joints(graph: RosGraph, robot: Robot) -> None:
@@ -187,7 +187,7 @@ def test_another_node_of_that_name_leaves_the_ports_of_yarp_alone(
     with RosRobot(robot, graph.uri) as ros:
         graph.tool("rosnode", "kill", "/icubSim")
         wait_until(lambda: not ros.node._node.members, HANG, "it left the graph")
-        assert not any(port.closed for port in robot.images.values())
+        assert not any(camera.images.closed for camera in robot.cameras.values())
 
 
 def test_a_camera_that_is_a_topic_by_its_name(

@@ -26,9 +26,9 @@ from yarpy.kits.sim.icub import ICUB_BODY, ICUB_HEAD
 from yarpy.kits.sim.joint import Joint
 
 if TYPE_CHECKING:
+    from yarpy.kits.devices import FrameGrabberServer
     from yarpy.kits.devices.interfaces.place import Odometry, Place
     from yarpy.names.base import NameClient
-    from yarpy.port.base import BasePort
 
 NAME: Final = "/icubSim"
 FPS: Final = 30.0
@@ -110,7 +110,7 @@ class Robot(Closeable):
         self.name = name = prefix(name)
         self.parts = parts
         self.ports: list[str] = []  # prefixes
-        self.images: dict[str, BasePort] = {}  # the ports of the cameras, by their parts' names
+        self.cameras: dict[str, FrameGrabberServer] = {}  # by their parts' names
         with ExitStack() as resources:
             for part, board in parts.boards.items():
                 server = ControlBoardServer(f"{name}/{part}", board, names=names)
@@ -118,7 +118,7 @@ class Robot(Closeable):
             for part, camera in parts.cameras.items():
                 grabber = FrameGrabberServer(f"{name}/{part}", camera, 1 / fps, names=names)
                 self.ports.append(resources.enter_context(grabber).name)
-                self.images[part] = grabber.images
+                self.cameras[part] = grabber
             for part, sensors in parts.sensors.items():
                 measures = MultiSensorServer(f"{name}/{part}", sensors, names=names)
                 self.ports.append(resources.enter_context(measures).name)

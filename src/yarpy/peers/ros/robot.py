@@ -5,9 +5,8 @@
     /icubSim/set_model_configuration    gazebo_msgs/SetModelConfiguration: moves joints
     /tf                                 tf2_msgs/TFMessage, where its parts and cameras are
 
-Rules: ROS measures angles in radians and lengths in metres, YARP in degrees and millimetres. All
-names are below the robot's own, also those of frames (icubSim/head), so that it is not taken for
-another one. Nothing is measured or drawn while nobody subscribes.
+Rules: those of `robot_state`, which has the joints and the frames. Nothing is drawn while nobody
+subscribes.
 """
 
 from __future__ import annotations
@@ -16,22 +15,19 @@ import os
 import threading
 from collections.abc import Sequence
 from contextlib import ExitStack
-from dataclasses import dataclass
-from math import isfinite, radians
+from math import isfinite
 from typing import Any, Final
 
 from yarpy.config.configuration import configuration
-from yarpy.data.stamp import Stamp
 from yarpy.errors import YarpError
 from yarpy.kits.devices.closeable import Closeable
 from yarpy.kits.devices.control_board.interface import ControlMode
-from yarpy.kits.devices.publisher import Publisher
 from yarpy.kits.sim.robot import Robot
 from yarpy.names.address import is_local
 from yarpy.peers.ros.graph_name import ros_name
 from yarpy.peers.ros.master import VARIABLE, RosMaster, parse_uri, uri_of
 from yarpy.peers.ros.node.node import Node
-from yarpy.peers.ros.transform.topic import MOVING, TYPE, transform_of
+from yarpy.peers.ros.robot_state import Published, RobotState
 
 TRY: Final = """
 With ROS, whose master answers at {master}:
@@ -44,19 +40,7 @@ With ROS, whose master answers at {master}:
 """
 
 QUICK: Final = 0.5  # seconds for a master to answer
-PERIOD: Final = 0.02  # seconds between joint states
 SERVICE: Final = "gazebo_msgs/SetModelConfiguration"
-_UNITS: Final = {"prismatic": 0.001}  # metres in a millimetre
-
-
-@dataclass(frozen=True)
-class _Joint:
-    """The board of a joint, its number there, and what one of its units is in ROS."""
-
-    name: str
-    board: Any
-    number: int
-    unit: float
 
 
 class RosRobot(Closeable):
@@ -66,62 +50,22 @@ class RosRobot(Closeable):
     """
 
     def __init__(self, robot: Robot, master: str | None = None) -> None:
-        self._model = robot.name.strip("/")
-        self._joints = _joints(robot)
-        self._framed = robot.parts.frames
-        self._stamp = Stamp()
-        framed = set() if self._framed is None else {each.name for each in self._framed.frames()[1]}
         with ExitStack() as resources:
             self.node = node = resources.enter_context(Node(robot.name, master=master))
-            for part, port in robot.images.items():
+            self._state = state = RobotState(robot, self._publish, lambda *time: [*time])
+            resources.callback(state.close)
+            for part, camera in robot.cameras.items():
+                port = camera.images
                 if "@" not in port.name:  # else it is a topic already, by its name
                     topic = ros_name(f"{robot.name}/{part}")
-                    frame = self._frame(part) if part in framed else ""  # else a view of nowhere
-                    node.attach(port, topic, "sensor_msgs/Image", frame)
-            if self._joints:
-                self._states = node.publisher("~joint_states", "sensor_msgs/JointState")
+                    node.attach(port, topic, "sensor_msgs/Image", state.frame_of(part))
+            if state.joints:
                 node.service("~set_model_configuration", SERVICE, self._move)
-                publisher = Publisher(f"{robot.name}/joint_states", PERIOD, self._publish)
-                resources.callback(publisher.close)
-            if self._framed is not None:
-                self._places = node.publisher(MOVING, TYPE, queue_size=100)
-                mover = Publisher(f"{robot.name}/tf", PERIOD, self._publish_frames)
-                resources.callback(mover.close)
             self._resources = resources.pop_all()
 
-    def _publish(self) -> None:
-        """Send where the joints are, and how fast they move."""
-        if not self._states.outputs:
-            return
-        positions = {board: board.encoders() for board in self._boards()}
-        speeds = {board: board.encoder_speeds() for board in positions}
-        when = max(max(board.timestamps()) for board in positions)
-        self._stamp = self._stamp.next(when)
-        state = {
-            "name": [joint.name for joint in self._joints],
-            "position": [positions[each.board][each.number] * each.unit for each in self._joints],
-            "velocity": [speeds[each.board][each.number] * each.unit for each in self._joints],
-        }
-        self._states.write(state, self._stamp)
-
-    def _frame(self, name: str) -> str:
-        """The name of one of its frames in ROS, where those of all robots are together."""
-        return f"{self._model}/{name}"
-
-    def _publish_frames(self) -> None:
-        """Send where all frames are."""
-        if self._framed is None or not self._places.outputs:
-            return
-        when, frames = self._framed.frames()
-        stamp = [*divmod(round(when * 1e9), 1_000_000_000)]
-        made = []
-        for each in frames:
-            parent, child = self._frame(each.parent), self._frame(each.name)
-            made.append(transform_of(parent, child, each.origin, each.orientation, stamp))
-        self._places.write({"transforms": made})
-
-    def _boards(self) -> dict[Any, None]:
-        return dict.fromkeys(joint.board for joint in self._joints)
+    def _publish(self, topic: str, type_: str) -> Published:
+        made = self.node.publisher(topic, type_, queue_size=100)
+        return Published(lambda: made.outputs, made.write)
 
     def _move(self, asked: Any) -> tuple[bool, str]:
         """Let joints move to positions; the answer does not wait until they are there."""
@@ -129,8 +73,8 @@ class RosRobot(Closeable):
         if problem:
             return False, problem
         wanted = dict(zip(asked.joint_names, map(float, asked.joint_positions), strict=True))
-        for board in self._boards():
-            chosen = [joint for joint in self._joints if joint.board is board]
+        for board in self._state.boards:
+            chosen = [joint for joint in self._state.joints if joint.board is board]
             chosen = [joint for joint in chosen if joint.name in wanted]
             if chosen:
                 numbers = [joint.number for joint in chosen]
@@ -140,9 +84,9 @@ class RosRobot(Closeable):
 
     def _problem(self, model: str, names: Sequence[str], positions: Sequence[float]) -> str:
         """Return why it cannot be done; "" if it can."""
-        known = [joint.name for joint in self._joints]
-        if model not in ("", self._model):
-            return f"there is no model {model!r} here, only {self._model}"
+        known = [joint.name for joint in self._state.joints]
+        if model not in ("", self._state.model):
+            return f"there is no model {model!r} here, only {self._state.model}"
         if len(names) != len(positions):
             return f"{len(names)} names of joints with {len(positions)} positions"
         for name, position in zip(names, positions, strict=True):
@@ -193,16 +137,3 @@ def _configured() -> str:
     stored = [each for each in found.servers if each.mode == "ros"]
     said = next((uri_of(each.host, each.port) for each in stored), "")
     return os.environ.get(VARIABLE) or said
-
-
-def _joints(robot: Robot) -> list[_Joint]:
-    """Return all joints, each with a name of its own: with its part's where two have the same."""
-    found: list[_Joint] = []
-    boards = robot.parts.boards
-    names = [name for board in boards.values() for name in board.axis_names]
-    for part, board in boards.items():
-        kinds = getattr(board, "axis_types", ["revolute"] * len(board.axis_names))
-        for number, (name, kind) in enumerate(zip(board.axis_names, kinds, strict=True)):
-            full = name if names.count(name) == 1 else f"{part}/{name}"
-            found.append(_Joint(full, board, number, _UNITS.get(kind, radians(1.0))))
-    return found

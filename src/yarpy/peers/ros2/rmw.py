@@ -39,6 +39,10 @@ class Writer(Endpoint, Protocol):
     events: Events
     now: Callable[[], float]
 
+    @property
+    def subscribers(self) -> int:
+        """The number of subscriptions to the topic, with its type."""
+
     def write(self, value: object) -> None:
         """Send a value to all who subscribe. A header without a time gets the present one. Raises
         TypeError, ValueError, DecodeError for what is nothing of the type."""

@@ -65,6 +65,24 @@ def test_nothing_is_grabbed_while_nobody_looks(server, camera, names):
     assert camera.taken == taken
 
 
+def test_a_viewer_of_another_system_sees_images_too(server, camera):
+    class Viewer:
+        outputs, seen = 0, []
+
+        def write(self, image, stamp):
+            self.seen.append((image.width, image.height, stamp.count))
+
+    viewer = Viewer()
+    server.viewers.append(viewer)
+    steps(server)
+    assert not viewer.seen and camera.taken == 0
+    viewer.outputs = 1
+    wait_until(lambda: len(viewer.seen) > 1)
+    server.viewers.remove(viewer)
+    assert [row[:2] for row in viewer.seen[:2]] == [(64, 48)] * 2
+    assert viewer.seen[0][2] < viewer.seen[1][2]
+
+
 def test_both_ports_answer(server, names):
     for port in ("/eye", "/eye/rpc"):
         with yarpy.RpcClient(port, names=names) as client:

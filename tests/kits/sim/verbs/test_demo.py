@@ -13,8 +13,11 @@ import pytest
 from support.command_line import CommandLine
 from support.port import free_block, free_port
 from support.process import Process
+from support.ros2_peer import ros2_router
 from support.ros_graph import ros_graph
 from support.wait import HANG, wait_until
+
+import yarpy
 
 CHECKOUT = Path(__file__).parents[4]
 
@@ -190,6 +193,25 @@ def test_it_is_a_node_where_a_ros_master_answers(tmp_path: Path):
             assert process.wait(HANG) == 0, process.stderr
             assert process.stderr == ""
         assert "/icubSim" not in graph.tool("rosnode", "list").split()
+
+
+def test_it_is_a_node_where_a_router_of_ros_2_answers(tmp_path: Path, monkeypatch):
+    pytest.importorskip("zenoh", reason='Zenoh: pip install "yarpy[ros2]"')
+    for variable in ("RMW_IMPLEMENTATION", "ROS_DOMAIN_ID", "ZENOH_SESSION_CONFIG_URI"):
+        monkeypatch.delenv(variable, raising=False)
+    with ros2_router() as number:
+        monkeypatch.setenv("YARPY_ZENOH", f"127.0.0.1:{number}")
+        lonely = CommandLine(tmp_path, {"YARPY_ZENOH": f"127.0.0.1:{number}"})
+        with lonely.start("demo", "--no-browser") as process:
+            process.wait_line("Ctrl-C ends it all", timeout=HANG)
+            assert "With ROS 2, over Zenoh (RMW_IMPLEMENTATION=rmw_zenoh_cpp):" in process.stdout
+            topic = line(process, "ros2 topic echo").split()[-1]
+            with yarpy.BufferedPort("", register=False) as port:
+                port.listen_to(f"ros2:/{topic}~sensor_msgs/msg/JointState")
+                assert "neck_yaw" in port.read(timeout=HANG).ros.name
+            process.signal(signal.SIGINT)
+            assert process.wait(HANG) == 0, process.stderr
+            assert process.stderr == ""
 
 
 @pytest.mark.parametrize("uri", ["http://127.0.0.1:{}/", "http://nowhere.invalid:{}/", "nonsense"])

@@ -6,6 +6,7 @@ from importlib.util import find_spec
 from pathlib import Path
 
 import pytest
+from support.ros2_peer import ros2_router
 from support.ros_graph import ros_graph
 from support.wait import HANG, wait_until
 
@@ -96,6 +97,25 @@ def test_a_node_of_ros(tmp_path):
             process.signal(signal.SIGINT)
             assert process.wait(HANG) == 0, process.stderr
         assert "/icubSim" not in graph.tool("rosnode", "list").split()
+
+
+def test_a_node_of_ros_2(cli, monkeypatch):
+    pytest.importorskip("zenoh", reason='Zenoh: pip install "yarpy[ros2]"')
+    from yarpy.peers import ros2
+
+    for variable in ("RMW_IMPLEMENTATION", "ROS_DOMAIN_ID", "ZENOH_SESSION_CONFIG_URI"):
+        monkeypatch.delenv(variable, raising=False)
+    with ros2_router() as number:
+        monkeypatch.setenv("YARPY_ZENOH", f"127.0.0.1:{number}")
+        cli.environment["YARPY_ZENOH"] = f"127.0.0.1:{number}"
+        states = []
+        with cli.start("sim", "--ros2", "--size", "64x48") as process, ros2.Node("/me") as node:
+            process.wait_line(r"^/icubSim is ready", stream="out", timeout=HANG)
+            node.subscriber("/icubSim/joint_states", "sensor_msgs/msg/JointState", states.append)
+            wait_until(lambda: states, HANG)
+            assert "neck_yaw" in states[0].name
+            process.signal(signal.SIGINT)
+            assert process.wait(HANG) == 0, process.stderr
 
 
 @pytest.mark.parametrize(

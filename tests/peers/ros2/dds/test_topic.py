@@ -26,5 +26,9 @@ def test_topics(here: None, own: str) -> None:
             return heard.count("more") > 1
 
         wait_until(twice)
+        wait_until(lambda: writer.subscribers == 1)  # for a second a new reader is beside the old
         topic.close()
         topic.close()
+        wait_until(lambda: writer.subscribers == 0)
+        writer.close()
+        assert writer.subscribers == 0

@@ -21,6 +21,18 @@ def test_what_is_written_is_heard(names: yarpy.LocalNames) -> None:
             out.write({"name": 5})
 
 
+def test_subscriptions_are_counted(names: yarpy.LocalNames) -> None:
+    with ros2.Node("/a") as a, ros2.Node("/b") as b, yarpy.BufferedPort("/port") as port:
+        out = a.publisher("/news", "std_msgs/msg/String")
+        assert out.subscribers == 0
+        hearer = b.subscriber("/news", "std_msgs/msg/String", print)
+        port.listen_to("ros2://news")
+        b.subscriber("/news", "std_msgs/msg/Int32", print)  # of another type
+        wait_until(lambda: out.subscribers == 2)
+        hearer.close()
+        wait_until(lambda: out.subscribers == 1)
+
+
 def test_who_comes_late_gets_what_was_kept(names: yarpy.LocalNames) -> None:
     heard: list[Any] = []
     with ros2.Node("/a") as a, ros2.Node("/b") as b, yarpy.BufferedPort("/port") as port:

@@ -12,7 +12,7 @@ from __future__ import annotations
 
 import threading
 from contextlib import ExitStack
-from typing import Any, Final
+from typing import Any, Final, Protocol
 
 from yarpy import clock
 from yarpy.data.bottle import Bottle
@@ -36,6 +36,17 @@ from yarpy.wire.message import Message
 _FUNCTION: Final = ("get", "set", "has")
 
 
+class Viewer(Protocol):
+    """Sees the images, as a port of YARP does or in another system."""
+
+    @property
+    def outputs(self) -> object:
+        """Whoever watches; what is false where nobody does."""
+
+    def write(self, image: Image, stamp: Stamp, /) -> object:
+        """Show an image with its number and time."""
+
+
 class FrameGrabberServer(Closeable):
     """Serves `device` (see `devices.frame_grabber.interface`) to viewers and other programs.
 
@@ -43,7 +54,7 @@ class FrameGrabberServer(Closeable):
     period: seconds between images.
     names: a name client, None for the default.
     Raises AddressError (a name is in use), NoNameServer; ValueError if the device has no image().
-    `images` is the port of the images.
+    `images` is the port of the images, `viewers` are all that see them, the port first.
     """
 
     def __init__(
@@ -67,6 +78,7 @@ class FrameGrabberServer(Closeable):
             self.images = resources.enter_context(
                 BufferedPort(name, callback=self._reply, names=names, port_type="yarp/image")
             )
+            self.viewers: list[Viewer] = [self.images]
             self._publisher = Publisher(name, period, self._publish)
             resources.callback(self._publisher.close)
             self._resources = resources.pop_all()
@@ -108,7 +120,8 @@ class FrameGrabberServer(Closeable):
             message.reply(self._answer(message))
 
     def _publish(self) -> None:
-        if not self.images.outputs:
+        viewers = [viewer for viewer in self.viewers if viewer.outputs]
+        if not viewers:
             return
         try:
             image = self._grab()
@@ -117,4 +130,5 @@ class FrameGrabberServer(Closeable):
         when = self._camera.ask("timestamp") if self._camera.has("timestamp") else clock.now()
         self._responder.size = image.width, image.height
         self._stamp = self._stamp.next(float(when))
-        self.images.write(image, self._stamp)
+        for viewer in viewers:
+            viewer.write(image, self._stamp)

@@ -5,9 +5,9 @@
     --lan          let the other computers of this network see and move the robot too
 
 It prints what to try, with curl, with netcat, with yarpy, with C++ YARP, and with ROS where a
-master answers on this computer (with --lan: anywhere). The numbers of its ports are 10000 (or
-YARP_PORT_RANGE) and those behind it, or any free ones if somebody has those. Nothing is written to
-the configuration.
+master, or a router of Zenoh for ROS 2, answers on this computer (with --lan: anywhere). The numbers
+of its ports are 10000 (or YARP_PORT_RANGE) and those behind it, or any free ones if somebody has
+those. Nothing is written to the configuration.
 Exit code: 0.
 """
 

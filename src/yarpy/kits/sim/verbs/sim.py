@@ -6,7 +6,10 @@
     --whole           torso, arms and legs too, the boards of a whole iCub
     --mujoco FILE     this model instead of the head: joints, cameras, sensors, lasers, a base; or a
                       folder with its scene.xml, as in MuJoCo Menagerie
-    --ros             as a node of ROS 1 too: pictures, joint states, a service that moves joints
+    --ros             as a node of ROS 1 too: pictures, joint states, frames, a service that moves
+                      joints
+    --ros2            as a node of ROS 2 too: pictures, joint states, frames; over what
+                      RMW_IMPLEMENTATION names, else over Zenoh, which needs `yarpy router`
 
 Exit codes: 0 ended by a signal; 1 the names are in use, the file is no model, MuJoCo is missing.
 """

@@ -39,6 +39,15 @@ class DdsWriter(DdsPublisher):
         self._writing = threading.Lock()  # one writer may take over from another
         begun(self, type_)
 
+    @property
+    def subscribers(self) -> int:
+        """The number of subscriptions to the topic, with its type."""
+        with self._writing:  # no writer ends meanwhile
+            if self._over:
+                return 0
+            writers = [each for each in (self._entity, self._next) if each is not None]
+            return len({one for each in writers for one in each.get_matched_subscriptions()})
+
     def write(self, value: object) -> None:
         """Send a value to all who subscribe. A header without a time gets the present one. Raises
         TypeError, ValueError, DecodeError for what is nothing of the type."""

@@ -21,7 +21,7 @@ import sys
 from collections.abc import Callable, Mapping, Sequence
 from typing import Any, Final, Self, TypeVar
 
-from yarpy.errors import AddressError, DecodeError, LocalProtocolError
+from yarpy.errors import AddressError, DecodeError, LinkClosed, LocalProtocolError
 from yarpy.log import logger
 from yarpy.peers.ros2.action.client import ActionClient
 from yarpy.peers.ros2.action.server import ActionServer, Goal
@@ -52,6 +52,8 @@ log = logger("yarpy.ros2")
 
 C = TypeVar("C")
 SIMULATED: Final = "use_sim_time"  # the parameter that every node has
+MIDDLEWARE: Final = "RMW_IMPLEMENTATION"
+DDS_TOO: Final = f"Where the nodes of ROS 2 speak DDS, set {MIDDLEWARE}=rmw_cyclonedds_cpp"
 
 
 class Node:
@@ -103,8 +105,10 @@ class Node:
                     self._answer(f"{self.name}/{service}", type_, handler, self._worker, None)
             describe, name_ = self._describer.answer, f"{self.name}/get_type_description"
             self._answer(name_, DESCRIBED, describe, self._worker, None)
-        except BaseException:
+        except BaseException as error:
             self.close()
+            if isinstance(error, LinkClosed) and not is_said(rmw):
+                raise LinkClosed(f"{error}. {DDS_TOO}") from error
             raise
         self.parameters._told = self._tell
         self.parameters.watch(self._watch)
@@ -326,10 +330,15 @@ class Node:
         return item
 
 
+def is_said(said: str | None, environment: Mapping[str, str] = os.environ) -> bool:
+    """Return whether somebody says which it is, DDS or Zenoh."""
+    return bool(said or environment.get(MIDDLEWARE))
+
+
 def is_dds(said: str | None = None, environment: Mapping[str, str] = os.environ) -> bool:
     """Return whether a node speaks DDS, not Zenoh: what is said, else what RMW_IMPLEMENTATION
     names, else Zenoh. Raises AddressError."""
-    name = said or environment.get("RMW_IMPLEMENTATION") or "zenoh"
+    name = said or environment.get(MIDDLEWARE) or "zenoh"
     if name in ("zenoh", "rmw_zenoh_cpp"):
         return False
     if name == "dds" or (said is None and name.startswith("rmw_")):

@@ -39,6 +39,12 @@ class Writer(Publisher):
         super().__init__(take_part(domain), str(node), node, name, qos)
         begun(self, type_)
 
+    @property
+    def subscribers(self) -> int:
+        """The number of subscriptions to the topic, with its type."""
+        seen = self.participant.graph.endpoints(self.name, *self.peers)
+        return sum(token.key == self.key for token in seen)
+
     def write(self, value: object) -> None:
         """Send a value to all who subscribe; it waits for nobody. A header without a time gets the
         present one. Raises TypeError, ValueError, DecodeError for what is nothing of the type."""
