@@ -7,7 +7,7 @@ import pytest
 from support.cpp import CppYarp
 from support.cpp_program import CppProgram
 from support.lasted import lasted
-from support.wait import HANG
+from support.wait import HANG, wait_until
 
 import yarpy
 from yarpy import Bottle, Message, Vocab
@@ -50,6 +50,20 @@ def test_cpp_asks(peer: CppProgram, carrier: str) -> None:
         ]
         assert server.inputs[0].carrier == carrier
         assert peer.do("[ask(str(i)) for i in range(500)] == [f'ok {i}' for i in range(500)]")
+
+
+@pytest.mark.parametrize("carrier", CARRIERS)
+def test_cpp_asks_an_interrupted_server(peer: CppProgram, carrier: str) -> None:
+    """It is told that there is no answer, and its connection comes back."""
+    peer.do(CPP_CLIENT)
+    with yarpy.RpcServer("/server", echo) as server:
+        assert peer.do(f"yarp.Network.connect('/client', '/server', '{carrier}')")
+        assert peer.do("ask('1')") == "ok 1"
+        server.interrupt()
+        assert peer.do("ask('2')") is False
+        server.resume()
+        assert server.wait_for_inputs(timeout=HANG)
+        wait_until(lambda: peer.do("ask('3')") == "ok 3")
 
 
 @pytest.mark.parametrize("carrier", CARRIERS)

@@ -52,6 +52,7 @@ def test_hub_knows_nobody_who_acts_on_it() -> None:
         watch=lambda hub: told.append(f"watch {hub.name}"),
         forget=lambda hub: told.append(f"forget {hub.name}"),
         input_lost=lambda hub, route: None,
+        give_up=lambda hub, name, incoming: False,
     )
     actions = Actions(
         administer=lambda hub, message: Bottle(["as", "you", "like"]),

@@ -6,6 +6,8 @@ import socket
 import sys
 import threading
 import time
+from concurrent.futures import ThreadPoolExecutor
+from typing import Any
 from urllib.request import urlopen
 
 import pytest
@@ -27,6 +29,7 @@ from yarpy.errors import (
     UnknownName,
 )
 from yarpy.link.begin.handshake import greet
+from yarpy.link.receive.inbound import Inbound
 from yarpy.nameserver.local import LocalNames
 from yarpy.port import inputs
 from yarpy.port.port import Port
@@ -88,6 +91,93 @@ def test_a_question_that_a_closed_port_never_answered_is_no_empty_answer(
         asking.join(HANG)
         assert len(failed) == 1
         assert "nobody knows whether it has done what it was told" in failed[0]
+
+
+@pytest.mark.parametrize("carrier", ["tcp", "memory", "local", "http", "text", "websocket"])
+def test_a_question_to_an_interrupted_server_is_no_empty_answer(
+    carrier: str, names: LocalNames
+) -> None:
+    """Nothing was done, and nobody says so. After `resume` the next one is answered."""
+    with (
+        RpcServer("/server", lambda message: "done", names=names) as server,
+        RpcClient("/server", carrier=carrier, names=names) as client,
+    ):
+        server.interrupt()
+        with pytest.raises(LinkClosed, match="nobody knows whether it has done"):
+            client.call("go", timeout=HANG)
+        server.resume()
+        assert client.call("go", timeout=HANG) in ("done", ["done"])
+
+
+def test_a_question_that_waits_for_its_turn_is_not_answered_by_an_interrupted_server(
+    names: LocalNames,
+) -> None:
+    begun, go_on = threading.Event(), threading.Event()
+    asked: list[str] = []
+
+    def answer(message: Message) -> str:
+        asked.append(message.value[0])
+        begun.set()
+        assert go_on.wait(HANG)
+        return "done"
+
+    with (
+        RpcServer("/server", answer, lock=True, names=names) as server,
+        RpcClient("/server", names=names) as first,
+        RpcClient("/server", names=names) as second,
+        ThreadPoolExecutor() as pool,
+    ):
+        one = pool.submit(first.call, "one", timeout=HANG)
+        assert begun.wait(HANG)
+        two = pool.submit(second.call, "two", timeout=HANG)
+        wait_until(lambda: sum(link.stats.messages for link in server.inputs) == 2)
+        server.interrupt()
+        go_on.set()
+        assert one.result(HANG) == "done"  # it was at work
+        with pytest.raises(LinkClosed):
+            two.result(HANG)
+        assert asked == ["one"]
+
+
+@pytest.mark.parametrize("carrier", ["tcp", "memory"])
+@pytest.mark.parametrize("how", ["waits", "was read from the socket"])
+def test_a_question_that_an_interrupted_port_drops_is_no_empty_answer(
+    how: str, carrier: str, names: LocalNames, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    with (
+        Port("/in", names=names) as reader,
+        RpcClient("/in", carrier=carrier, names=names) as client,
+        ThreadPoolExecutor() as pool,
+    ):
+        if how == "waits":
+            asking = pool.submit(client.call, "go", timeout=HANG)
+            wait_until(lambda: reader.waiting == 1)
+            reader.interrupt()
+        else:  # by a reader that waits there; the interrupt comes right behind it
+            read, armed = Inbound.read, threading.Event()
+
+            def read_then_interrupted(link: Inbound, *arguments: Any) -> Message | None:
+                found = read(link, *arguments)
+                if found is not None:
+                    armed.set() if found.value == ["go on"] else reader.interrupt()
+                return found
+
+            def serve() -> None:
+                while True:
+                    reader.read(timeout=HANG).reply("yes")
+
+            monkeypatch.setattr(Inbound, "read", read_then_interrupted)
+            serving = pool.submit(serve)
+            wait_until(lambda: client.call("go on", timeout=HANG) == "yes" and armed.is_set())
+            asking = pool.submit(client.call, "go", timeout=HANG)
+            with pytest.raises(PortClosed):
+                serving.result(HANG)
+        with pytest.raises(LinkClosed, match="nobody knows whether it has done"):
+            asking.result(HANG)
+        reader.resume()
+        again = pool.submit(client.call, "again", timeout=HANG)
+        reader.read(timeout=HANG).reply("yes")
+        assert again.result(HANG) == "yes"
 
 
 @pytest.mark.parametrize(("arguments", "heard"), CALLS)

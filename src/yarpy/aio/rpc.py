@@ -14,8 +14,7 @@ from typing import TYPE_CHECKING, Any, ClassVar, Generic, Self, TypeVar, Unpack
 
 from yarpy.aio.base import ENDED, BasePort
 from yarpy.aio.thread import Turn
-from yarpy.data.bottle import Bottle
-from yarpy.data.value import Vocab
+from yarpy.data.failure import answer_of
 from yarpy.errors import PortClosed
 from yarpy.port import rpc
 from yarpy.port.connection import PortConnection
@@ -32,7 +31,7 @@ class RpcServer(BasePort[rpc.RpcServer]):
 
     Handlers run in the loop, those of different clients side by side. What one raises is answered
     as an error, which `call` raises as RemoteError, and logged; those still at work when the server
-    closes are cancelled.
+    closes are cancelled, and who asked gets LinkClosed.
     Parameters as `yarpy.RpcServer`.
     """
 
@@ -55,7 +54,7 @@ class RpcServer(BasePort[rpc.RpcServer]):
             except PortClosed as error:
                 if str(error) != ENDED:
                     raise
-                return Bottle([Vocab("fail"), ENDED])
+                return answer_of(error)
 
         server = rpc.RpcServer(self._name, answer, **self._options)
         page = getattr(self._handler, "page", None)
@@ -73,7 +72,9 @@ class RpcServer(BasePort[rpc.RpcServer]):
         except asyncio.CancelledError:
             if not task.cancelling():  # what the handler waited for was cancelled
                 raise RuntimeError("the handler was cancelled") from None
-            return Bottle([Vocab("fail"), "the server was closed meanwhile"])
+            if message.answer is not None:
+                message.answer.forsaken = True
+            return None
         finally:
             self._working.discard(task)
 

@@ -234,6 +234,10 @@ class Hub:
         """Expect an input again that ended without a goodbye."""
         self.actions.reconnect.input_lost(self, route)
 
+    def input_left(self, route: Route) -> None:
+        """Expect an input no more: its sender has said goodbye."""
+        self.actions.reconnect.give_up(self, route.source, incoming=True)
+
     def output_lost(self, route: Route) -> None:
         """Connect an output again that broke without anybody asking for it."""
         self.actions.reconnect.output_lost(self, route)

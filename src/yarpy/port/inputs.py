@@ -78,6 +78,9 @@ class Hub(Protocol):
     def input_lost(self, route: Route) -> None:
         """Expect an input again that ended without a goodbye."""
 
+    def input_left(self, route: Route) -> None:
+        """Expect an input no more: its sender has said goodbye."""
+
 
 class Inputs:
     """The connections into one port; `budget` is what their unfinished messages may hold."""
@@ -308,9 +311,11 @@ class Inputs:
         finally:
             with self.lock:
                 self._telling = tuple(item for item in self._telling if item is not link)
-        if quit_ or hub.life.closing:
+        if hub.life.closing:
             return
-        if link.replaced:  # it has broken: its sender has dialled again before we saw that
+        if quit_:  # also where one before it was lost, and is still to be asked for
+            hub.input_left(link.route)
+        elif link.replaced:  # it has broken: its sender has dialled again before we saw that
             hub.saved_qos.keep(link)
             self._inherit(link.route.source)
         elif not link.closing:

@@ -2,7 +2,8 @@
 
 Rules: `put` runs in the thread of the connection and may make it wait; `take` runs in the reader's.
 Messages of dropped turns are counted on the link that brought them. After `interrupt` everything
-that comes is dropped, and readers get PortClosed, until `resume`.
+that waits or comes is dropped, and readers get PortClosed, until `resume`; a question that is
+dropped ends its connection.
 """
 
 from __future__ import annotations
@@ -134,7 +135,7 @@ class Mailbox:
                 self._offer(_STOP)
 
     def close(self) -> None:
-        """Interrupt it for good: questions that are open get no answer, not an empty one."""
+        """Interrupt it for good: questions that were read get no answer any more, either."""
         self.closed = True
         self.interrupt()
 
@@ -183,8 +184,8 @@ class Mailbox:
         """Drop and count what a token stands for; a second time does nothing."""
 
     def _forsake(self, message: Message) -> None:
-        """Nobody answers it any more, if this is closed."""
-        if self.closed and message.answer is not None:
+        """Give a question no answer, not an empty one, if this is stopped or closed."""
+        if (self.stopped or self.closed) and message.answer is not None:
             message.answer.forsaken = True
 
     def _drop_once(self, token: Waiting | Offer) -> None:
@@ -473,8 +474,9 @@ class Callback(Mailbox):
                 return
             else:
                 with self._lock:
-                    handler(message)
-                return
+                    if not self.stopped:  # while it waited for its turn
+                        handler(message)
+                        return
         except PortClosed:
             pass
         except YarpError as error:

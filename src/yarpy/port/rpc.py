@@ -111,9 +111,10 @@ class RpcServer(BasePort):
         answer = Bottle() if reply is None else reply
         if self._hub.outputs.links:
             self._forward(message, answer)
-        # A handler that has answered by `message.reply` returns None: there is nothing left to say.
+        # A handler that has answered by `message.reply` returns None: there is nothing left to say,
+        # nor is there for one that was cancelled.
         way = message.answer
-        if way is not None and (reply is not None or way.right):
+        if way is not None and (reply is not None or (way.right and not way.forsaken)):
             try:
                 (way.give if way.right else message.reply)(answer)
             except Exception as error:

@@ -239,7 +239,7 @@ class Answer:
         self.left: Callable[[], None] | None = None
         self.right = [True]  # to answer; a thread takes it out, which only one can
         self._ended = False  # who had the right has used it
-        self.forsaken = False  # the port was closed before anybody did
+        self.forsaken = False  # the port was interrupted or closed: nobody will
 
     @property
     def busy(self) -> bool:

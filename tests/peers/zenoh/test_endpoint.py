@@ -88,6 +88,23 @@ def test_a_server_that_raises_replies_with_an_error(client: Any) -> None:
             assert asker.call("chosen") == [yarpy.Vocab("fail"), "not today"]
 
 
+def test_an_interrupted_server_replies_with_an_error(client: Any) -> None:
+    """All who ask share its end, which stays."""
+    with yarpy.RpcServer("/server", lambda message: "done") as server:
+        server.listen_to("zenoh+srv://robot/paused")
+
+        def ask() -> list[Any]:
+            return [*client.get("robot/paused", payload="[1]")]
+
+        wait_until(lambda: ask())
+        server.interrupt()
+        (reply,) = ask()
+        assert reply.err.payload.to_string().startswith("PortClosed: the port is interrupted")
+        server.resume()
+        (reply,) = ask()
+        assert reply.ok.payload.to_string() == '"done"'
+
+
 def test_a_port_answers_a_plain_get(client: Any) -> None:
     with yarpy.RpcServer("/server", lambda message: ["ok", *message.value]):
         assert yarpy.connect("zenoh+srv://robot/ask", "/server").carrier == "zenoh+srv+sub"

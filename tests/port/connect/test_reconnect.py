@@ -304,6 +304,26 @@ def test_what_is_found_dead_while_it_is_disconnected_stays_so(
         assert not wanted
 
 
+def test_what_has_come_back_and_said_goodbye_is_not_asked_for(names: yarpy.LocalNames) -> None:
+    """The sender has dialled again by itself, and was disconnected before it would be asked."""
+    with (
+        yarpy.RpcServer("/server", lambda message: "yes", names=names) as server,
+        yarpy.RpcClient("/server", name="/client", names=names) as client,
+    ):
+
+        def lost() -> list[Lost]:
+            return [one for one in reconnect.RECONNECTOR._lost if one.hub is server._hub]
+
+        server.interrupt()
+        with pytest.raises(yarpy.LinkClosed):
+            client.call("x", timeout=HANG)
+        server.resume()
+        assert client.call("x", timeout=HANG) == "yes"
+        assert client.disconnect("/server")
+        wait_until(lambda: not (server.inputs or lost()))
+        assert not client.outputs
+
+
 @pytest.mark.parametrize("carrier", ["tcp", "fast_tcp", "text", "udp"])
 def test_what_the_receiver_disconnected_stays_disconnected(carrier: str) -> None:
     """Its sender is told, and takes it for no failure."""

@@ -416,8 +416,9 @@ class Inbound:
                 answer.left = partial(self.leave, message)  # that its end is not missed
                 if answer.busy:
                     return
-        except YarpError:
-            pass  # the asker has gone
+        except YarpError:  # the asker has gone, or is to get no answer
+            if answer is not None and answer.forsaken:
+                self.driver.transport.interrupt()
         self.turn.stir()
 
     # -- ending -----------------------------------------------------------------------------------

@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING
 
 from yarpy.carriers.base import Carrier
 from yarpy.data.bottle import Bottle
+from yarpy.data.failure import raised
 from yarpy.data.yarp4 import is_yarp4
 from yarpy.errors import (
     DecodeError,
@@ -331,11 +332,15 @@ class Receiver:
             # Without any answer a caller waits for ever; one in C++ takes the acknowledgement for
             # it. For a person at a text prompt, a name service or a page, silence is better than an
             # empty answer.
-            if answer.forsaken:
-                self.question = None
-                raise LinkClosed("the port was closed before it had answered")
+            carrier = self.carrier
             try:
-                if self.carrier.spelling != "text" and not self.carrier.delivery.lossy:
+                if answer.forsaken and carrier.reaches.topic:  # where others ask, too
+                    self.reply(raised("PortClosed", "the port is interrupted, or closes"))
+                    return True
+                if answer.forsaken:
+                    self.question = None
+                    raise LinkClosed("the port was interrupted or closed before it had answered")
+                if carrier.spelling != "text" and not carrier.delivery.lossy:
                     self.reply(Bottle())
                     return True
                 self.question = None
