@@ -23,7 +23,7 @@ from typing import Any
 import yarpy
 from yarpy.errors import YarpError
 from yarpy.kits.launch.console import control
-from yarpy.kits.launch.log.intake import Intake
+from yarpy.kits.launch.log.collector import LogCollector
 
 SLEEP = ["sleep", "100000"]
 SENDER = """
@@ -171,16 +171,16 @@ def logged(programs: int, rate: int, seconds: float) -> str:
     """A row: lines that programs log, taken and read by the logger."""
     sender = [sys.executable, "-c", SENDER, str(rate // programs), str(seconds)]
     os.environ["YARP_FORWARD_LOG_ENABLE"] = "1"
-    intake = Intake(lambda hear: yarpy.Port("/yarplogger", callback=hear))
+    collector = LogCollector(lambda hear: yarpy.Port("/yarplogger", callback=hear))
     running = [subprocess.Popen(sender, stdout=subprocess.PIPE, text=True) for _ in range(programs)]
     read = told = 0
-    while intake.waiting or any(process.poll() is None for process in running):
-        for line, _ in intake.read(0.2):
+    while collector.waiting or any(process.poll() is None for process in running):
+        for line, _ in collector.read(0.2):
             gap = line.text.partition(" lines before this one are lost")
             told += int(gap[0]) if gap[1] else 0
             read += line.text.startswith("a small line")
-    lost = intake.lost
-    intake.close()
+    lost = collector.lost
+    collector.close()
     counts = [list(map(float, process.communicate()[0].split())) for process in running]
     sent, came, cost = (sum(column) for column in zip(*counts, strict=True))
     return (

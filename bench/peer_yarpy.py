@@ -38,9 +38,9 @@ def take_no_short_cut(options):
     """With a router: as if there were no other way."""
     if options.router:
         options.carrier = ""  # the one that is chosen then
-        from yarpy.peers.zenoh import ways as direct
+        from yarpy.peers.zenoh import reachability as direct
 
-        direct.Ways.to = lambda self, entry: entry.through
+        direct.Reachability.to = lambda self, entry: entry.through
 
 
 def serve_ports(options, **reading):

@@ -31,7 +31,7 @@ from pathlib import Path
 
 import zenoh
 
-from yarpy.peers.zenoh import ways as direct
+from yarpy.peers.zenoh import reachability as direct
 from yarpy.peers.zenoh.names import ZenohNames
 
 WORKERS = 4
@@ -199,7 +199,7 @@ def lookups(options, observers) -> dict:
 def outage(options, observers, routers) -> dict:
     import yarpy
 
-    direct.Ways.to = lambda self, entry: entry.through  # one end cannot dial the other
+    direct.Reachability.to = lambda self, entry: entry.through  # one end cannot dial the other
     each = options.names // options.programs
     programs = range(0, options.programs, 3)  # of the first router
     sample = [f"/p{n}/port{n % each}" for n in programs][:SAMPLE]

@@ -145,7 +145,7 @@ OWN = {
     "peers/ros2/zenoh/graph.py": "what a router tells, not what is read of it",
     "peers/zenoh/gateway.py": "connections, not what is read of them",
     "peers/zenoh/exchange.py": "connections, not what is read of them",
-    "peers/zenoh/ways.py": "programs that are remembered",
+    "peers/zenoh/reachability.py": "programs that are remembered",
     "peers/mpi/end.py": "what we send at once",
     "peers/mpi/meeting.py": "helpers at a time",
     "peers/zmq/zmtp.py": "the length of a reason in the protocol",

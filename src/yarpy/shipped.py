@@ -337,10 +337,10 @@ SHIPPED: Final[Mapping[str, Mapping[str, Row]]] = {
     "interfaces": _table(Row("thrift", f"{_KITS}.thrift.observed:read", "idl")),
     # Types of devices in the files of robots (`kits/launch/robot/contract.py`).
     "devices": DEVICES,
-    # Graphs in which a simulated robot is shown, too (`kits/sim/guest.py`).
+    # Graphs in which a simulated robot is shown, too (`kits/sim/robot_publisher.py`).
     "robots": _table(
-        Row("ros", f"{_PEERS}.ros.robot:RosGuest"),
-        Row("ros2", f"{_PEERS}.ros2.robot:Ros2Guest"),
+        Row("ros", f"{_PEERS}.ros.robot:RosRobotPublisher"),
+        Row("ros2", f"{_PEERS}.ros2.robot:Ros2RobotPublisher"),
     ),
     # What ports may be part of beside their connections; it has ports of its own, too.
     "graphs": GRAPHS,

@@ -41,7 +41,7 @@ ALLOWED = {
     "yarpy.kits.devices.status",
     "yarpy.kits.devices.wrapper",
     "yarpy.kits.launch.manager",
-    "yarpy.kits.launch.robot.alone",
+    "yarpy.kits.launch.robot.standalone",
     "yarpy.log",
     "yarpy.names.default",
     "yarpy.names.discovery",

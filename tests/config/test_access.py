@@ -7,7 +7,7 @@ from dataclasses import replace
 
 import pytest
 
-from yarpy.config.access import REMEMBERED, Access, Door, Rule
+from yarpy.config.access import REMEMBERED, Access, Rule, RuledGate
 from yarpy.link.begin.admission import ASK, RIGHTS, Peer
 
 FAR = Peer("192.168.1.9")
@@ -63,7 +63,7 @@ def test_which_ports_are_covered(ports: str, port: str, covered: bool) -> None:
 
 def test_what_no_rule_allows_is_refused() -> None:
     access = Access((rule("192.168.1.0/24", "read", "/cam*"), rule("loopback", " ".join(RIGHTS))))
-    far = Door(access, "/camera").admit(FAR)
+    far = RuledGate(access, "/camera").admit(FAR)
     assert far.rights() == ["read"]
     assert not far.everything
     assert not far.open
@@ -71,22 +71,22 @@ def test_what_no_rule_allows_is_refused() -> None:
     assert far.refusal("write").startswith(
         "Access refused: 192.168.1.9 may not write to /camera, only read; "
     )
-    nobody = Door(access, "/arm").admit(FAR)
+    nobody = RuledGate(access, "/arm").admit(FAR)
     assert nobody.rights() == []
     assert "may not ask anything of /arm; " in nobody.refusal(ASK)
-    assert Door(access, "/arm").admit(HERE).everything
-    assert not Door(Access(()), "/arm").admit(HERE).allows("read")
+    assert RuledGate(access, "/arm").admit(HERE).everything
+    assert not RuledGate(Access(()), "/arm").admit(HERE).allows("read")
 
 
 def test_rules_add_up() -> None:
     access = Access((rule("anyone", "read"), rule("loopback", "write attach administer", "/arm")))
-    assert Door(access, "/arm").admit(HERE).everything
-    assert Door(access, "/leg").admit(HERE).rights() == ["read"]
+    assert RuledGate(access, "/arm").admit(HERE).everything
+    assert RuledGate(access, "/leg").admit(HERE).rights() == ["read"]
 
 
 def test_a_name_server_answers_whom_any_rule_is_about() -> None:
     access = Access((rule("192.168.1.0/24", "read register", "/cam/*"),))
-    admission = Door(access, "/root", names=True).admit(FAR)
+    admission = RuledGate(access, "/root", names=True).admit(FAR)
     assert admission.rights() == ["read", "write"]  # commands are messages
     assert not admission.everything
     assert admission.allows("register", "/cam/left")
@@ -94,13 +94,13 @@ def test_a_name_server_answers_whom_any_rule_is_about() -> None:
     assert not admission.allows("register", "...")
     assert "may not register or change /arm; " in admission.refusal("register", "/arm")
     made_up = Access((rule("anyone", "register", "/tmp/*"),))
-    assert Door(made_up, "/root", names=True).admit(FAR).allows("register", "...")
-    assert not Door(access, "/root", names=True).admit(Peer("10.0.0.1")).rights()
+    assert RuledGate(made_up, "/root", names=True).admit(FAR).allows("register", "...")
+    assert not RuledGate(access, "/root", names=True).admit(Peer("10.0.0.1")).rights()
 
 
 def test_a_token_gives_the_rights_of_its_name() -> None:
     access = Access((rule("token:panel"),), {"panel": "s" * 16, "other": "t" * 16})
-    before = Door(access, "/arm").admit(FAR)
+    before = RuledGate(access, "/arm").admit(FAR)
     assert before.takes_tokens
     assert not before.allows("read")
     after = before.showing("s" * 16)
@@ -118,7 +118,7 @@ def test_a_token_gives_the_rights_of_its_name() -> None:
 
 def test_a_public_key_gives_the_rights_of_its_name() -> None:
     access = Access((rule("token:arm"),), {"panel": "s" * 64}, keys={"arm": "a" * 64})
-    before = Door(access, "/arm").admit(FAR)
+    before = RuledGate(access, "/arm").admit(FAR)
     assert before.takes_tokens
     after = before.showing("a" * 64, public_key=True)
     assert after is not None
@@ -126,7 +126,7 @@ def test_a_public_key_gives_the_rights_of_its_name() -> None:
     # Everybody may know it: it is no secret, and a secret is no key.
     assert before.showing("a" * 64) is None
     assert before.showing("s" * 64, public_key=True) is None
-    without = Door(Access((rule("token:panel"),), {"panel": "s" * 64}), "/arm").admit(FAR)
+    without = RuledGate(Access((rule("token:panel"),), {"panel": "s" * 64}), "/arm").admit(FAR)
     assert without.showing("a" * 64, public_key=True) is without
 
 
@@ -134,7 +134,7 @@ def test_a_refusal_is_logged_once(caplog: pytest.LogCaptureFixture) -> None:
     caplog.set_level(logging.INFO, "yarpy.access")
     access = Access((rule("loopback"),), path="/etc/access.toml")
     for _ in range(3):
-        admission = Door(access, "/arm").admit(FAR)
+        admission = RuledGate(access, "/arm").admit(FAR)
         assert admission.refusal("write")
         assert not admission.allows("read")  # asking is not trying
     assert [record.getMessage() for record in caplog.records] == [
@@ -147,13 +147,13 @@ def test_a_refusal_is_logged_once(caplog: pytest.LogCaptureFixture) -> None:
 def test_what_was_logged_is_remembered_within_bounds() -> None:
     access = Access(())
     for number in range(2 * REMEMBERED):
-        Door(access, f"/{number}").admit(FAR).refusal("read")
+        RuledGate(access, f"/{number}").admit(FAR).refusal("read")
     assert len(access._told) == REMEMBERED
 
 
 def test_certificates_are_asked_for_where_a_rule_has_their_names() -> None:
-    assert Door(Access((rule("anyone tls:operator"),)), "/arm").asks_names
-    assert not Door(Access((rule("anyone token:tls"),)), "/arm").asks_names
+    assert RuledGate(Access((rule("anyone tls:operator"),)), "/arm").asks_names
+    assert not RuledGate(Access((rule("anyone token:tls"),)), "/arm").asks_names
 
 
 def test_a_rule_reads_as_a_sentence() -> None:

@@ -14,7 +14,7 @@ import yarpy
 from yarpy.errors import YarpError
 from yarpy.kits.launch.application import manager_file, toml_file
 from yarpy.kits.launch.application.load import load
-from yarpy.kits.launch.log.kept import TextFile
+from yarpy.kits.launch.log.log_file import TextFile
 from yarpy.kits.launch.log.shown import text_of, told_of
 from yarpy.kits.launch.robot import robot_file, shown
 from yarpy.kits.launch.run import request as requests

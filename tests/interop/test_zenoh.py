@@ -19,7 +19,7 @@ import yarpy
 from yarpy.config.authority import make
 from yarpy.errors import AccessRefused, LocalProtocolError, YarpError
 from yarpy.peers.zenoh import exchange as zenoh_exchange
-from yarpy.peers.zenoh import ways as direct
+from yarpy.peers.zenoh import reachability as direct
 from yarpy.peers.zenoh.names import ZenohNames
 from yarpy.peers.zenoh.router import open_router
 from yarpy.peers.zenoh.transport import close
@@ -52,7 +52,7 @@ class Lab:
 def _far_away(monkeypatch: pytest.MonkeyPatch) -> None:
     for name in ("YARPY_ZENOH", "YARPY_TLS", "YARPY_BIND", "YARPY_ACCESS"):
         monkeypatch.delenv(name, raising=False)
-    monkeypatch.setattr(direct.Ways, "to", lambda self, entry: entry.through)
+    monkeypatch.setattr(direct.Reachability, "to", lambda self, entry: entry.through)
 
 
 @pytest.fixture
@@ -162,8 +162,8 @@ def test_what_needs_a_direct_way_says_so(lab: Lab, monkeypatch: pytest.MonkeyPat
 
 CARELESS = """
 import sys, yarpy
-from yarpy.peers.zenoh import ways
-ways.Ways.to = lambda self, entry: entry.through
+from yarpy.peers.zenoh import reachability
+reachability.Reachability.to = lambda self, entry: entry.through
 near, far = (yarpy.zenoh.ZenohNames(f"{host}:{sys.argv[1]}") for host in ("127.0.0.1", "localhost"))
 out, in_ = yarpy.Port("...", names=near), yarpy.BufferedPort("...", names=far)
 out.connect(in_.name, timeout=10)
@@ -227,7 +227,7 @@ def test_cpp_programs_take_part(
 ) -> None:
     """Through a server beside the names; where there is no direct way, through its gateway."""
     if direct_way:
-        monkeypatch.setattr(direct.Ways, "to", lambda self, entry: entry.contact)
+        monkeypatch.setattr(direct.Reachability, "to", lambda self, entry: entry.contact)
     where = f"127.0.0.1:{free_port()}"
     router = open_router([where])
     names = ZenohNames(where.replace("127.0.0.1", "localhost"))

@@ -11,7 +11,7 @@ from yarpy.errors import LocalProtocolError
 from yarpy.facts import TransportRow
 from yarpy.shipped import TRANSPORTS
 from yarpy.transports.base import Transport
-from yarpy.transports.opener import Elsewhere, Opener
+from yarpy.transports.opener import MeetingPlace, Opener
 
 HERE = {name: row for name, row in TRANSPORTS.items() if is_here(row)}
 
@@ -32,7 +32,7 @@ def test_what_an_opener_cannot_do() -> None:
     with pytest.raises(LocalProtocolError, match="nothing can be dialled over own"):
         Own.dial(Contact("tcp", "/x", "127.0.0.1", 1), 1.0)
     with pytest.raises(LocalProtocolError, match="cannot meet over own"):
-        Own.meet(Elsewhere(Transport(), False, 0, "", 1.0))
+        Own.meet(MeetingPlace(Transport(), False, 0, "", 1.0))
 
 
 def test_hosts_lead_to_their_transport() -> None:

@@ -19,7 +19,7 @@ import yarpy
 from yarp._log import print_lines
 from yarpy.kits.devices.catalogue import lines
 from yarpy.kits.devices.wrapper import server_of
-from yarpy.kits.launch.robot.alone import Alone
+from yarpy.kits.launch.robot.standalone import StandaloneDevice
 from yarpy.registry import devices
 
 EXIT_USAGE = 1
@@ -31,7 +31,7 @@ class Yarpdev(yarpy.Module):
     period = 3.0
 
     def configure(self, resources: yarpy.ResourceFinder) -> bool:
-        self.opened = Alone(resources.values, devices.load, server_of)
+        self.opened = StandaloneDevice(resources.values, devices.load, server_of)
         # The devices have ports called NAME/rpc of their own.
         self.name = ""
         try:

@@ -10,7 +10,7 @@ from collections.abc import Callable
 
 from yarpy.errors import LocalProtocolError
 from yarpy.transports.base import Transport
-from yarpy.transports.opener import Elsewhere, Opener
+from yarpy.transports.opener import MeetingPlace, Opener
 from yarpy.transports.socket_transport import SocketTransport
 
 
@@ -21,7 +21,7 @@ class AbstractSockets(Opener):
     stays = True  # nothing leaves the computer
 
     @classmethod
-    def meet(cls, place: Elsewhere) -> Transport:
+    def meet(cls, place: MeetingPlace) -> Transport:
         ends = sorted((place.through.local, place.through.remote))
         if ends[0][0] != ends[1][0]:
             raise LocalProtocolError("abstract sockets are for programs of one computer: take tcp")

@@ -169,7 +169,7 @@ class Ruled(Admission):
         return Ruled(self._access, replace(self.peer, token=name), self._port, self._names)
 
 
-class Door(Gate):
+class RuledGate(Gate):
     """The gate of a port whose owner has written rules; `names`: it is a name server."""
 
     def __init__(self, access: Access, port: str, names: bool = False) -> None:

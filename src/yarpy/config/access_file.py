@@ -23,7 +23,7 @@ from functools import lru_cache
 from pathlib import Path
 from typing import Any, Final
 
-from yarpy.config.access import ALL, FILE, Access, Door, Rule
+from yarpy.config.access import ALL, FILE, Access, Rule, RuledGate
 from yarpy.errors import AddressError
 from yarpy.link.begin.admission import KNOWN, RIGHTS, Gate
 from yarpy.platform.folders import conf_directory, folder
@@ -44,7 +44,7 @@ _HEAD: Final = re.compile(r"\s*+\[\[\s*+allow\s*+\]\]")
 def gate(port: str, names: bool = False) -> Gate:
     """The gate of the port called `port`. Raises AddressError for a file with a mistake in it."""
     access = current()
-    return Gate() if access is None else Door(access, port, names)
+    return Gate() if access is None else RuledGate(access, port, names)
 
 
 def current() -> Access | None:

@@ -78,7 +78,7 @@ class Pairing:
         if facts.reaches.same_program:
             self._check_one_program(names or DEFAULT.current())
         self.asked = asked
-        self._visit: probe.Visit | None = None  # for all questions to that port
+        self._visit: probe.AdminConnection | None = None  # for all questions to that port
         self.peer = (from_ if self.pull else to).label
         # Perhaps a camera, which does not understand us: ask its receiver first.
         self.plain = from_.reachable and not from_.name and not self.pull
@@ -119,9 +119,9 @@ class Pairing:
         except (LinkClosed, Timeout, RemoteProtocolError):
             pass  # perhaps it can be reached from the other one, if not from here
 
-    def _visited(self) -> probe.Visit:
+    def _visited(self) -> probe.AdminConnection:
         if self._visit is None:
-            self._visit = probe.Visit(self.asked, CONNECTING)
+            self._visit = probe.AdminConnection(self.asked, CONNECTING)
         return self._visit
 
     def close(self) -> None:

@@ -29,7 +29,7 @@ from yarpy.names.client import YarpNameClient
 from yarpy.port.answer import crowd, guard, spelling
 from yarpy.port.answer.callbacks import Callbacks
 from yarpy.port.answer.monitoring import Monitoring
-from yarpy.port.answer.rivals import Rivals
+from yarpy.port.answer.name_conflicts import NameConflicts
 from yarpy.port.connect import goodbye
 from yarpy.port.connect.saved import SavedQos
 from yarpy.port.graph import Membership
@@ -98,7 +98,7 @@ class Inputs:
         # Of the outputs, too, since closing ends both. A signal handler may close the port above a
         # frame that has it.
         self.lock = threading.RLock()
-        self._rivals = Rivals(lambda: hub.name)
+        self._conflicts = NameConflicts(lambda: hub.name)
 
     @property
     def name(self) -> str:
@@ -191,7 +191,7 @@ class Inputs:
         hub.changed()
         hub.saved_qos.give(link)
         if any(_lives(old) for old in older):
-            self._rivals.replaced(source)
+            self._conflicts.replaced(source)
         for old in older:
             old.replaced = not old.closing
             old.close()
@@ -216,7 +216,7 @@ class Inputs:
     def rival(self, source: str) -> str:
         """Return why another input of that name is not taken, "" if it is: it may be the same
         program, whose connection broke, or which has closed it to make another one."""
-        why = self._rivals.refusal(source) if self._alive(source) else ""
+        why = self._conflicts.refusal(source) if self._alive(source) else ""
         limit = time.monotonic() + LEAVING
         while why and time.monotonic() < limit:
             alive = self._alive(source)

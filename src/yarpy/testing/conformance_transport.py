@@ -17,7 +17,7 @@ from contextlib import AbstractContextManager, contextmanager
 from typing import Any, ClassVar
 
 from yarpy.transports.base import ObjectTransport, Transport
-from yarpy.transports.opener import Elsewhere, Opener
+from yarpy.transports.opener import MeetingPlace, Opener
 from yarpy.transports.tcp import TcpTransport
 
 SIZES = (1, 100, 4096, 65_536, 1_000_000)
@@ -175,7 +175,7 @@ def _met(opener: type[Opener], timeout: float, listens_first: bool) -> Iterator[
         number = 0
         for listen in (listens_first, not listens_first):
             through = accepted if listen else dialled
-            end = opener.meet(Elsewhere(through, listen, number, "/conformance", timeout))
+            end = opener.meet(MeetingPlace(through, listen, number, "/conformance", timeout))
             assert end is not None, "two programs of one computer do not meet"
             ends.append(end)
             number = end.port

@@ -16,7 +16,7 @@ from collections.abc import Sequence
 
 from yarpy.transports.base import Address, Transport
 from yarpy.transports.bind import listening_host
-from yarpy.transports.opener import Elsewhere, Opener
+from yarpy.transports.opener import MeetingPlace, Opener
 from yarpy.transports.pace import Pace
 from yarpy.transports.socket_transport import MSG_DONTWAIT, SocketTransport
 from yarpy.wire.stream import Buffer
@@ -233,7 +233,7 @@ class Udp(Opener):
     datagrams = True
 
     @classmethod
-    def meet(cls, place: Elsewhere) -> Transport:
+    def meet(cls, place: MeetingPlace) -> Transport:
         through = place.through
         return open_udp(place.listen, through.local, through.remote, place.port)
 
@@ -246,6 +246,6 @@ class Mcast(Opener):
     datagrams = True
 
     @classmethod
-    def meet(cls, place: Elsewhere) -> Transport:
+    def meet(cls, place: MeetingPlace) -> Transport:
         listen, group, port = place.listen, place.group, place.port
         return open_mcast(listen, place.through.local, place.through.remote, group, port)

@@ -16,7 +16,7 @@ from yarpy.errors import RemoteProtocolError
 from yarpy.platform.timed_queue import TimedQueue
 from yarpy.scope import Flag
 from yarpy.transports.base import Address, ObjectTransport, Transport
-from yarpy.transports.opener import Elsewhere, Opener
+from yarpy.transports.opener import MeetingPlace, Opener
 
 TIMEOUT = 5.0  # seconds for the two ends to meet
 LOOK = 0.01  # seconds between checks whether the other end will still come
@@ -175,6 +175,6 @@ class Inproc(Opener):
     stays = True
 
     @classmethod
-    def meet(cls, place: Elsewhere) -> Transport:
+    def meet(cls, place: MeetingPlace) -> Transport:
         through = place.through
         return open_inproc(place.listen, through.local, through.remote)

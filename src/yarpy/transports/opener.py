@@ -19,7 +19,7 @@ CONNECT_TIMEOUT: Final = 10.0  # seconds, as C++ YARP
 
 
 @dataclass(frozen=True, slots=True)
-class Elsewhere:
+class MeetingPlace:
     """The meeting place of the two ends of a connection that have greeted over `through`.
 
     `listen`: we accepted that connection. `port`, `group`: what the carrier says about the place
@@ -56,7 +56,7 @@ class Opener:
         raise LocalProtocolError(f"nothing can be dialled over {cls.name}: take tcp")
 
     @classmethod
-    def meet(cls, place: Elsewhere) -> Any:
+    def meet(cls, place: MeetingPlace) -> Any:
         """Return our end, before the peer has come: a Transport, whose `ready` waits for it. None
         if the peer cannot be met from here. Raises OSError, LocalProtocolError."""
         raise LocalProtocolError(f"two ends of a connection cannot meet over {cls.name}: take tcp")

@@ -22,7 +22,7 @@ from yarpy.route import Route
 from yarpy.threads import Thread
 from yarpy.transports.base import Address
 from yarpy.transports.bind import listening_host
-from yarpy.transports.opener import CONNECT_TIMEOUT, Elsewhere, Opener
+from yarpy.transports.opener import CONNECT_TIMEOUT, MeetingPlace, Opener
 from yarpy.transports.peer_timeout import ZeroWindowTimeout, notice_death
 from yarpy.transports.socket_transport import SocketTransport
 from yarpy.transports.tcp_info import tcp_info
@@ -241,5 +241,5 @@ class Tcp(Opener):
         return dial(contact.host, contact.port, timeout)
 
     @classmethod
-    def meet(cls, place: Elsewhere) -> TcpTransport:
+    def meet(cls, place: MeetingPlace) -> TcpTransport:
         return dial(*place.through.remote, place.timeout)

@@ -17,7 +17,7 @@ from functools import lru_cache
 from pathlib import Path
 from typing import Any, Final
 
-from yarpy.transports.opener import CONNECT_TIMEOUT, Elsewhere, Opener
+from yarpy.transports.opener import CONNECT_TIMEOUT, MeetingPlace, Opener
 from yarpy.transports.socket_transport import MSG_DONTWAIT
 from yarpy.transports.tcp import TcpTransport, dial
 from yarpy.transports.tls_setting import folder, mutual
@@ -370,7 +370,7 @@ class Tls(Opener):
     name = "tls"
 
     @classmethod
-    def meet(cls, place: Elsewhere) -> TlsTransport:
+    def meet(cls, place: MeetingPlace) -> TlsTransport:
         through = place.through
         assert isinstance(through, TlsTransport)
         return dial_tls(through.host or through.remote[0], through.remote[1], place.timeout)

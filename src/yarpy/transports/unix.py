@@ -21,7 +21,7 @@ from yarpy import scope
 from yarpy.errors import LocalProtocolError, Timeout
 from yarpy.platform.user import user
 from yarpy.transports.base import Address, Transport
-from yarpy.transports.opener import Elsewhere, Opener
+from yarpy.transports.opener import MeetingPlace, Opener
 from yarpy.transports.tcp import TcpTransport
 
 _LONGEST: Final = 107 if sys.platform == "linux" else 103  # bytes of a path that a socket may have
@@ -167,6 +167,6 @@ class Unix(Opener):
     uses = "Unix sockets in Python"
 
     @classmethod
-    def meet(cls, place: Elsewhere) -> Transport:
+    def meet(cls, place: MeetingPlace) -> Transport:
         through = place.through
         return open_unix(place.listen, through.local, through.remote)

@@ -15,7 +15,7 @@ from support.port import free_port
 from support.wait import HANG, wait_until
 
 import yarpy
-from yarpy.cli.verbs.server import BACKLOG, LONGEST, QUESTIONS, SILENT, Scribe, decide
+from yarpy.cli.verbs.server import BACKLOG, LONGEST, QUESTIONS, SILENT, CommandPrinter, decide
 from yarpy.config.configuration import Configuration, Server
 from yarpy.names.default import client_of
 
@@ -321,7 +321,7 @@ def test_an_own_address_is_chosen():
 
 
 def test_commands_are_marked(capsys):
-    scribe = Scribe()
+    scribe = CommandPrinter()
     for text in (
         'register "/a"',
         'bot set "/a" ips "::1"',
@@ -345,7 +345,7 @@ def test_commands_are_marked(capsys):
 
 
 def said(capsys, *commands: str) -> list[str]:
-    scribe = Scribe()
+    scribe = CommandPrinter()
     for text in commands:
         scribe.command(text, "127.0.0.1")
     scribe.close()
@@ -389,7 +389,7 @@ def test_no_client_waits_for_a_slow_terminal(monkeypatch):
         printed.extend(text.splitlines())
 
     monkeypatch.setattr("yarpy.cli.verbs.server.print_line", slow)
-    scribe = Scribe()
+    scribe = CommandPrinter()
     scribe.command("list", "")
     assert stuck.wait(HANG)
     for number in range(BACKLOG + 100):

@@ -10,11 +10,11 @@ from support.wait import HANG
 
 from yarpy.errors import LocalProtocolError
 from yarpy.kits.devices.access import Access
-from yarpy.kits.devices.refusal import Complaints, Refused
+from yarpy.kits.devices.refusal import DeviceErrorLog, Refused
 
 
 def access(device):
-    return Access(device, len(device.axis_names), Complaints("/head"), threading.Lock())
+    return Access(device, len(device.axis_names), DeviceErrorLog("/head"), threading.Lock())
 
 
 def test_attributes_are_assigned_whole():

@@ -1,11 +1,11 @@
 import logging
 
 from yarpy.kits.devices import refusal
-from yarpy.kits.devices.refusal import Complaints, Refused
+from yarpy.kits.devices.refusal import DeviceErrorLog, Refused
 
 
 def test_the_same_complaint_is_logged_once_in_a_while(caplog, monkeypatch):
-    complain = Complaints("/head")
+    complain = DeviceErrorLog("/head")
     with caplog.at_level(logging.WARNING):
         for _ in range(100):
             complain("encoders", OSError("cable"))
@@ -22,7 +22,7 @@ def test_the_same_complaint_is_logged_once_in_a_while(caplog, monkeypatch):
 
 
 def test_not_everything_is_remembered():
-    complain = Complaints("/head")
+    complain = DeviceErrorLog("/head")
     for number in range(1000):
         complain(f"command from /p{number}", Refused("bad"))
     assert len(complain._said) <= 200

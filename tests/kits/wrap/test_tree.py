@@ -13,7 +13,7 @@ import pytest
 import yarpy
 from yarpy.kits.wrap.frame import from_parts
 from yarpy.kits.wrap.npy import to_npy
-from yarpy.kits.wrap.tree import Planter, from_text, harvest, to_text
+from yarpy.kits.wrap.tree import TreeEncoder, decode_tree, from_text, to_text
 
 RECORDED = [
     ({"i": 0, "t": (1, 2)}, '{"i": 0, "t": {"__wrapyfi__": ["tuple", [1, 2]]}}'),
@@ -63,8 +63,8 @@ def test_what_a_text_cannot_hold(value: object) -> None:
 )
 def test_what_only_frames_hold(value: object) -> None:
     buffers: list[np.ndarray] = []
-    tree = json.loads(json.dumps(Planter(buffers).plant(value)))
-    assert harvest(tree, buffers) == value
+    tree = json.loads(json.dumps(TreeEncoder(buffers).encode(value)))
+    assert decode_tree(tree, buffers) == value
 
 
 def test_unknown_and_odd_tags_stay_what_they_are() -> None:

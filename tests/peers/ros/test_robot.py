@@ -19,7 +19,7 @@ from yarpy.kits.sim.head import eye_pose
 from yarpy.kits.sim.joint import Joint
 from yarpy.kits.sim.robot import Parts, Robot, icub_head
 from yarpy.peers.ros.node.node import Node
-from yarpy.peers.ros.robot import SERVICE, RosGuest, RosRobot
+from yarpy.peers.ros.robot import SERVICE, RosRobot, RosRobotPublisher
 
 WATCHER = """
 import rospy
@@ -136,7 +136,7 @@ def test_a_broken_address_file_is_no_master(
     for variable in ("YARP_CONF", "YARPY_SERVER", "YARP_NAMESPACE", "ROS_MASTER_URI"):
         monkeypatch.delenv(variable, raising=False)
     (tmp_path / "yarp.conf").write_text("127.0.0.1 nine yarp\n")
-    assert RosGuest().find(False) == ""
+    assert RosRobotPublisher().find(False) == ""
 
 
 def test_the_service_is_that_of_gazebo() -> None:

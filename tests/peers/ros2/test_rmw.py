@@ -11,7 +11,7 @@ from yarpy.peers.ros2 import rmw
 from yarpy.peers.ros2.dds.rmw import DdsRmw
 from yarpy.peers.ros2.zenoh.rmw import ZenohRmw
 
-PARTS = ("Writer", "Hearer", "Answerer", "Caller")
+PARTS = ("Writer", "Reader", "Answerer", "Caller")
 
 
 def words(kind: Any, name: str) -> list[str]:

@@ -18,7 +18,7 @@ import yarpy
 from yarpy.errors import AddressError, LinkClosed
 from yarpy.kits.sim.robot import Parts, Robot, icub_head
 from yarpy.peers import ros2
-from yarpy.peers.ros2.robot import IMAGE, Ros2Guest, Ros2Robot
+from yarpy.peers.ros2.robot import IMAGE, Ros2Robot, Ros2RobotPublisher
 
 JOINTS = ["neck_pitch", "neck_roll", "neck_yaw", "eyes_tilt", "eyes_version", "eyes_vergence"]
 
@@ -108,7 +108,7 @@ def test_a_name_that_ros_2_does_not_allow(names: yarpy.LocalNames) -> None:
 
 
 def test_it_is_shown_where_a_router_answers(router: int, monkeypatch: pytest.MonkeyPatch) -> None:
-    guest = Ros2Guest()
+    guest = Ros2RobotPublisher()
     monkeypatch.delenv("RMW_IMPLEMENTATION", raising=False)
     wait_until(lambda: guest.find(False) == "Zenoh", HANG)
     assert "rmw_zenoh_cpp" in guest.advice("/icubSim", "Zenoh")
@@ -121,8 +121,8 @@ def test_it_is_shown_where_a_router_answers(router: int, monkeypatch: pytest.Mon
 def test_it_is_shown_over_dds_where_that_is_said(monkeypatch: pytest.MonkeyPatch) -> None:
     pytest.importorskip("cyclonedds", reason='DDS: pip install "yarpy[dds]"')
     monkeypatch.setenv("RMW_IMPLEMENTATION", "rmw_cyclonedds_cpp")
-    assert Ros2Guest().find(False) == "DDS"
-    assert "RMW_IMPLEMENTATION=rmw_cyclonedds_cpp" in Ros2Guest().advice("/icubSim", "DDS")
+    assert Ros2RobotPublisher().find(False) == "DDS"
+    assert "RMW_IMPLEMENTATION=rmw_cyclonedds_cpp" in Ros2RobotPublisher().advice("/icubSim", "DDS")
 
 
 def test_without_a_router_it_says_what_to_do(

@@ -11,7 +11,7 @@ from support.wait import HANG, wait_until
 
 import yarpy
 from yarpy.errors import NoNameServer, YarpError
-from yarpy.peers.zenoh import ways as direct
+from yarpy.peers.zenoh import reachability as direct
 from yarpy.peers.zenoh.names import ZenohNames
 from yarpy.peers.zenoh.router import open_router
 from yarpy.peers.zenoh.transport import close
@@ -76,7 +76,7 @@ def test_ports_of_one_computer(server: yarpy.NameServer, names: ZenohNames) -> N
 def test_ports_that_cannot_dial_each_other(
     server: yarpy.NameServer, names: ZenohNames, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(direct.Ways, "to", lambda self, entry: entry.through)
+    monkeypatch.setattr(direct.Reachability, "to", lambda self, entry: entry.through)
     talk(server, names)
 
 
@@ -106,7 +106,7 @@ def test_rules_hold_for_those_who_are_brought(
     where: str, names: ZenohNames, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """The port sees a connection of this computer, which may do what strangers may not."""
-    monkeypatch.setattr(direct.Ways, "to", lambda self, entry: entry.through)
+    monkeypatch.setattr(direct.Reachability, "to", lambda self, entry: entry.through)
     rules = tmp_path / "access.toml"
     rules.write_text('[[allow]]\nwho = ["loopback"]\nmay = ["all"]\n')
     monkeypatch.setenv("YARPY_ACCESS", str(rules))

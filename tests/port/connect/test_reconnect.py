@@ -604,16 +604,16 @@ def test_a_sender_that_dials_while_it_answers_is_not_asked(
     names: yarpy.LocalNames, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     asked: list[object] = []
-    ask = probe.Visit.ask
+    ask = probe.AdminConnection.ask
 
-    def dials(visit: probe.Visit, question: Any) -> Any:
+    def dials(visit: probe.AdminConnection, question: Any) -> Any:
         asked.append(question[0])
         answer = ask(visit, question)
         out.connect("/in")
         wait_until(lambda: port.inputs)
         return answer
 
-    monkeypatch.setattr(probe.Visit, "ask", dials)
+    monkeypatch.setattr(probe.AdminConnection, "ask", dials)
     with yarpy.Port("/in", names=names) as port, yarpy.Port("/out", names=names) as out:
         item = back(port)
         item.back = time.perf_counter() - CALM

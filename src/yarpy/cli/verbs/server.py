@@ -117,7 +117,7 @@ def decide(
 # --- what it says
 
 
-class Scribe:
+class CommandPrinter:
     """Prints a line for each command, in a thread of its own: no client waits for a terminal.
 
     Questions about a port that is reported not to answer are printed once: the ports that were
@@ -317,7 +317,7 @@ def _serve(
             except OSError as error:
                 warn(f"the address cannot be stored: {reason(error)}: {error.filename}")
         if say is not _nothing:
-            scribe = Scribe()
+            scribe = CommandPrinter()
             service.on_command = scribe.command
         where = url_of(f"{server.host}:{server.port}")
         say(f"Name server can be browsed at {where}")

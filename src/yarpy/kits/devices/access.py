@@ -13,7 +13,7 @@ from typing import Any, Final, TypeVar
 
 from yarpy.errors import LocalProtocolError
 from yarpy.kits.devices.kind import FLOAT, Kind
-from yarpy.kits.devices.refusal import Complaints, Refused
+from yarpy.kits.devices.refusal import DeviceErrorLog, Refused
 
 T = TypeVar("T")
 
@@ -29,7 +29,7 @@ class Access:
     """An object with methods and attributes, any of which may be missing, for `count` joints."""
 
     def __init__(
-        self, target: object, count: int, complain: Complaints, lock: threading.Lock
+        self, target: object, count: int, complain: DeviceErrorLog, lock: threading.Lock
     ) -> None:
         self.target = target
         self.count = count

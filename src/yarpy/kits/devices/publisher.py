@@ -13,7 +13,7 @@ from math import isfinite
 from typing import Final
 
 from yarpy import clock
-from yarpy.kits.devices.refusal import Complaints
+from yarpy.kits.devices.refusal import DeviceErrorLog
 
 #: Seconds that a running step may take once its server is being closed.
 TIMEOUT: Final = 5.0
@@ -27,7 +27,7 @@ class Publisher:
             raise ValueError(f"{name}: the period must be a positive number of seconds: {period}")
         self.period = period
         self._step = step
-        self._complain = Complaints(name)
+        self._complain = DeviceErrorLog(name)
         self._ended = threading.Event()
         self._thread = threading.Thread(target=self._run, name=f"yarpy device {name}", daemon=True)
         self._thread.start()

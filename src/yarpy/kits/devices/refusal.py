@@ -19,7 +19,7 @@ class Refused(Exception):
     """A request for something the device does not have, or a malformed one."""
 
 
-class Complaints:
+class DeviceErrorLog:
     """Log lines about a user's device: one for each kind of error, not for each occurrence.
 
     A sensor that fails fifty times per second would otherwise bury all other lines.

@@ -14,12 +14,12 @@ import math
 from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any, Final, TypeAlias
 
-from yarpy.kits.sim.brush import Brush
 from yarpy.kits.sim.head import Pose
 from yarpy.kits.sim.lens import NEAR, NOWHERE, Box, Lens, Spans, around
 from yarpy.kits.sim.picture import Colour
 from yarpy.kits.sim.rotation import Vector, seen_from
 from yarpy.kits.sim.scene import Ball, Scene
+from yarpy.kits.sim.texture_mapper import TextureMapper
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -50,7 +50,7 @@ class Renderer:
         self._u = np.array([s.u for s in surfaces], float)
         self._v = np.array([s.v for s in surfaces], float)
         self._normal = np.cross(self._u, self._v)
-        self._brush = Brush([s.texels for s in surfaces], width, height)
+        self._mapper = TextureMapper([s.texels for s in surfaces], width, height)
         self._shades = {ball: _shades(ball.colours) for ball in scene.balls}
         sizes = [len(scene.background), *map(len, scene.solids)]
         self._solid = np.repeat(np.arange(len(sizes)), sizes)  # which body a surface is part of
@@ -108,7 +108,7 @@ class Renderer:
         numbers = numbers[chosen]
         inverses = np.linalg.inv(matrices[chosen])
         spans = self.lens.spans(inverses)
-        inverses[:, :2] *= self._brush.sizes[numbers][:, :, None]
+        inverses[:, :2] *= self._mapper.sizes[numbers][:, :, None]
         inverses = inverses.astype("f4")
         count = int((self._solid[numbers] == 0).sum())
         first = next((k for k in range(count) if not spans.boxes[k].empty), 0)
@@ -116,14 +116,14 @@ class Renderer:
             if not spans.boxes[k].empty:
                 number = int(numbers[k])
                 left, right = spans.left[k], spans.right[k]
-                self._brush.fill(
+                self._mapper.fill(
                     self._still, number, inverses[k], left, right, spans.boxes[k], first=k == first
                 )
         of_solids = Spans(spans.left[count:], spans.right[count:], spans.boxes[count:])
         self._faces = (
             numbers[count:], inverses[count:], of_solids, distances[self._solid[numbers[count:]]],
         )  # fmt: skip
-        self._brush.sprinkle(
+        self._mapper.sprinkle(
             self._still, numbers[count:], inverses[count:], of_solids.left, of_solids.right
         )
 
@@ -146,7 +146,7 @@ class Renderer:
         ]
         if in_front:
             part = Spans(spans.left[in_front], spans.right[in_front], ())
-            self._brush.sprinkle(
+            self._mapper.sprinkle(
                 self._frame, numbers[in_front], inverses[in_front], *part.within(painted)
             )
         return painted
@@ -165,7 +165,7 @@ class Renderer:
         box = self.lens.bounds(matrix)
         if box.empty:
             return box
-        u, v, _ = self._brush.places(np.linalg.inv(matrix).astype("f4"), box)
+        u, v, _ = self._mapper.places(np.linalg.inv(matrix).astype("f4"), box)
         for part in (u, v):
             part -= 0.5
             part *= part

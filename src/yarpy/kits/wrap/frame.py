@@ -21,7 +21,7 @@ from typing import TYPE_CHECKING, Any, Final
 
 from yarpy.errors import DecodeError, Truncated
 from yarpy.kits.wrap.npy import counted
-from yarpy.kits.wrap.tree import Buffer, Planter, harvest
+from yarpy.kits.wrap.tree import Buffer, TreeEncoder, decode_tree
 from yarpy.limit import FRAME_BUFFERS, check_json
 
 if TYPE_CHECKING:
@@ -46,7 +46,7 @@ class Frame:
 def to_parts(frame: Frame) -> list[Buffer]:
     """The header, and every buffer. Raises TypeError, ValueError for what cannot be sent."""
     arrays: list[NDArray[Any]] = []
-    header: dict[str, Any] = {"yarpy": 1, "tree": Planter(arrays).plant(frame.value)}
+    header: dict[str, Any] = {"yarpy": 1, "tree": TreeEncoder(arrays).encode(frame.value)}
     blocks: list[Buffer] = []
     if arrays:
         if len(arrays) > FRAME_BUFFERS:
@@ -174,7 +174,7 @@ def _array(kind: Any, data: Buffer, whole: bool = True) -> NDArray[Any]:
 
 
 def _frame(header: dict[str, Any], arrays: list[NDArray[Any]]) -> Frame:
-    tree = harvest(header["tree"], arrays)
+    tree = decode_tree(header["tree"], arrays)
     count, time, source = header.get("count"), header.get("time"), header.get("source", "")
     return Frame(
         tree,

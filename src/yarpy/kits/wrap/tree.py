@@ -59,7 +59,7 @@ class Jpeg:
         self.data = data
 
 
-class Planter:
+class TreeEncoder:
     """Makes trees. With `buffers` arrays and bytes go there, without they are text. What is of a
     type in `plain` is its own tree."""
 
@@ -68,7 +68,7 @@ class Planter:
     def __init__(self, buffers: list[NDArray[Any]] | None) -> None:
         self.buffers = buffers
 
-    def plant(self, value: Any, depth: int = 0) -> Any:
+    def encode(self, value: Any, depth: int = 0) -> Any:
         """Return the value for `json.dumps`. Raises TypeError, ValueError for what cannot be
         sent."""
         kind, plain = type(value), self.plain
@@ -78,23 +78,23 @@ class Planter:
             raise ValueError(f"a value that is nested more than {TREE_DEPTH} levels deep")
         below = depth + 1
         if kind is list or isinstance(value, tuple):
-            tree = [one if type(one) in plain else self.plant(one, below) for one in value]
+            tree = [one if type(one) in plain else self.encode(one, below) for one in value]
             return tree if kind is list else {TAG: ["tuple", tree]}
         if isinstance(value, dict):
-            return self._plant_dict(value, below)
-        return self._plant_other(value, below)
+            return self._encode_dict(value, below)
+        return self._encode_other(value, below)
 
-    def _plant_dict(self, value: dict[Any, Any], below: int) -> Any:
+    def _encode_dict(self, value: dict[Any, Any], below: int) -> Any:
         plain = TAG not in value and _TEXT.issuperset(map(type, value))
         if self.buffers is None or plain:  # JSON makes strings of keys, as Wrapyfi has it
-            return {key: self.plant(item, below) for key, item in value.items()}
-        pairs = [[self.plant(k, below), self.plant(v, below)] for k, v in value.items()]
+            return {key: self.encode(item, below) for key, item in value.items()}
+        pairs = [[self.encode(k, below), self.encode(v, below)] for k, v in value.items()]
         return tagged("dict", pairs)
 
-    def _plant_other(self, value: Any, below: int) -> Any:
+    def _encode_other(self, value: Any, below: int) -> Any:
         if isinstance(value, (set, frozenset)):
             tag = "set" if self.buffers is None or isinstance(value, set) else "frozenset"
-            return tagged(tag, [self.plant(item, below) for item in value])
+            return tagged(tag, [self.encode(item, below) for item in value])
         if isinstance(value, datetime):
             return tagged("datetime", value.isoformat())
         to_wire = getattr(value, "to_wire", None)
@@ -102,11 +102,11 @@ class Planter:
             return tagged("yarp", self._buffer(b"".join(codec.encode(value))))
         numpy = loaded("numpy")
         if numpy is not None and isinstance(value, (numpy.ndarray, numpy.generic)):
-            return self._plant_numpy(value, numpy)
+            return self._encode_numpy(value, numpy)
         if isinstance(value, bool | int | float | str):
             return _plainly(value)
         if isinstance(value, list):
-            return [self.plant(item, below) for item in value]
+            return [self.encode(item, below) for item in value]
         if self.buffers is not None:
             if type(value) is Jpeg:
                 return tagged("jpeg", self._buffer(value.data))
@@ -116,13 +116,13 @@ class Planter:
                 return {TAG: ["complex", value.real, value.imag]}
             array = array_of(value)
             if array is not None:
-                return self._plant_numpy(array, sys.modules["numpy"])
+                return self._encode_numpy(array, sys.modules["numpy"])
         raise TypeError(
             f"{type(value).__module__}.{type(value).__qualname__} cannot be sent: numbers, texts, "
             "bytes, lists, tuples, dicts, sets, dates, arrays and the types of yarpy can"
         )
 
-    def _plant_numpy(self, value: Any, numpy: Any) -> Any:
+    def _encode_numpy(self, value: Any, numpy: Any) -> Any:
         if isinstance(value, numpy.datetime64):
             return tagged("numpy.datetime64", str(value))
         if type(value) is numpy.float64:
@@ -179,17 +179,17 @@ def from_text(text: str | bytes) -> Any:
         raise DecodeError(f"not JSON, or with tags that do not fit: {error}") from error
 
 
-def harvest(tree: Any, buffers: Sequence[NDArray[Any]]) -> Any:
+def decode_tree(tree: Any, buffers: Sequence[NDArray[Any]]) -> Any:
     """The value of a tree with these buffers. Raises DecodeError."""
     try:
-        return Harvester(buffers).value(tree)
+        return TreeDecoder(buffers).value(tree)
     except DecodeError:
         raise
     except _WRONG as error:
         raise DecodeError(f"a tree with tags that do not fit: {error}") from error
 
 
-class Harvester:
+class TreeDecoder:
     """Makes values of one message's tree. What its tags unpack shares the limits of a message, and
     a buffer is named once: a reference takes less room than what it would make a copy of."""
 
@@ -280,7 +280,7 @@ class Harvester:
 
 
 #: a dict of a text as the value that its tag stands for: without buffers nothing is counted
-untag: Final = Harvester().untag
+untag: Final = TreeDecoder().untag
 
 _MAKERS: Final[dict[str, Callable[[Any], Any]]] = {
     "tuple": tuple,
@@ -310,4 +310,4 @@ def _bytes(text: Any) -> bytes:
 
 def to_text(value: Any) -> str:
     """Wrapyfi's NativeObject: JSON with tags, arrays in base64. Raises TypeError, ValueError."""
-    return json.dumps(Planter(None).plant(value))
+    return json.dumps(TreeEncoder(None).encode(value))

@@ -18,7 +18,7 @@ from yarpy.link.combine import combine
 from yarpy.link.driver import Driver, sooner
 from yarpy.link.object_driver import ObjectDriver
 from yarpy.transports.base import ObjectTransport, Transport
-from yarpy.transports.opener import CONNECT_TIMEOUT, Elsewhere
+from yarpy.transports.opener import CONNECT_TIMEOUT, MeetingPlace
 from yarpy.wire.effects import Group, Open, Switch, Within
 from yarpy.wire.framing import refused
 from yarpy.wire.lending_stream import LendingStream
@@ -129,7 +129,7 @@ def _open(effect: Open, through: Transport, deadline: float | None) -> Any:
     if refused:
         raise LocalProtocolError(refused)
     left = CONNECT_TIMEOUT if deadline is None else max(deadline - time.monotonic(), 0.001)
-    return opener.meet(Elsewhere(through, effect.listen, effect.port, effect.group, left))
+    return opener.meet(MeetingPlace(through, effect.listen, effect.port, effect.group, left))
 
 
 def _watch(driver: Driver) -> Callable[[], None]:

@@ -21,7 +21,7 @@ from yarpy.peers.mpi.library import SETTING, Library, in_time, library
 from yarpy.peers.mpi.meeting import Meeting
 from yarpy.peers.mpi.transport import MpiTransport
 from yarpy.transports.base import Transport
-from yarpy.transports.opener import Elsewhere, Opener
+from yarpy.transports.opener import MeetingPlace, Opener
 from yarpy.wire import framing
 from yarpy.wire.stream import DEFAULT_LIMIT, Buffer
 
@@ -272,7 +272,7 @@ class MpiOpener(Opener):
     meets = False
 
     @classmethod
-    def meet(cls, place: Elsewhere) -> Transport:
+    def meet(cls, place: MeetingPlace) -> Transport:
         return open_mpi(cls.name, place.listen, place.through.sock, place.group)
 
 

@@ -97,7 +97,7 @@ class RosRobot(Closeable):
         return ""
 
 
-class RosGuest:
+class RosRobotPublisher:
     """ROS as a graph in which a simulated robot is shown, too."""
 
     title = "ROS"

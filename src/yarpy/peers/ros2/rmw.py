@@ -48,7 +48,7 @@ class Writer(Endpoint, Protocol):
         TypeError, ValueError, DecodeError for what is nothing of the type."""
 
 
-class Hearer(Endpoint, Protocol):
+class Reader(Endpoint, Protocol):
     """Subscribes to a topic."""
 
     events: Events
@@ -81,7 +81,7 @@ class Rmw:
     AddressError, UnknownType, DecodeError."""
 
     writers: ClassVar[type[Any]]
-    hearers: ClassVar[type[Any]]
+    readers: ClassVar[type[Any]]
     answerers: ClassVar[type[Any]]
     callers: ClassVar[type[Any]]
 
@@ -92,15 +92,15 @@ class Rmw:
         made: Writer = self.writers(*self._of, name, type_, qos)
         return made
 
-    def hearer(
+    def reader(
         self,
         name: str,
         type_: str,
         callback: Callable[[Any], object],
         worker: Worker,
         qos: Qos | None,
-    ) -> Hearer:
-        made: Hearer = self.hearers(*self._of, name, type_, callback, worker, qos)
+    ) -> Reader:
+        made: Reader = self.readers(*self._of, name, type_, callback, worker, qos)
         return made
 
     def answerer(

@@ -88,7 +88,7 @@ def _time(seconds: int, nanoseconds: int) -> dict[str, int]:
     return {"sec": seconds, "nanosec": nanoseconds}
 
 
-class Ros2Guest:
+class Ros2RobotPublisher:
     """ROS 2 as a graph in which a simulated robot is shown, too."""
 
     title = "ROS 2"

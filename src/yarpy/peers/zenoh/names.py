@@ -34,8 +34,8 @@ from yarpy.peers.zenoh.exchange import Exchange, Welcome, join, know, leave, und
 from yarpy.peers.zenoh.key import Entry, name_key, newest, port_token
 from yarpy.peers.zenoh.library import CALLS, load
 from yarpy.peers.zenoh.place import SETTING, place
+from yarpy.peers.zenoh.reachability import ANYWHERE, Reachability, machine
 from yarpy.peers.zenoh.transport import SharedSession, share
-from yarpy.peers.zenoh.ways import ANYWHERE, Ways, machine
 from yarpy.transports.bind import listening_host
 
 if TYPE_CHECKING:
@@ -91,7 +91,7 @@ class ZenohNames:
         self._node: list[Any] = []  # what was declared for the whole program
         self._exchange: Exchange | None = None  # of connections through Zenoh
         self.on_lost: Callable[[str], object] = lambda name: None  # in a thread of its own
-        self._ways = Ways()
+        self._reachability = Reachability()
         self._addresses: tuple[tuple[str, ...], float] = (), 0.0  # ours, and until when
         _EVERYBODY.add(self)
         self._lock = threading.RLock()  # guards the above; never held while an answer is awaited
@@ -156,7 +156,7 @@ class ZenohNames:
         if entry is None:
             return None
         know(entry.zid, self._open().zid)
-        return self._ways.to(entry)
+        return self._reachability.to(entry)
 
     def announce(self, name: str, ok: bool = True) -> None:
         """Nothing: there are no persistent connections without a server."""

@@ -221,7 +221,7 @@ def _own_name(line: str) -> str:
     return name if at and not head else ""
 
 
-class Visit:
+class AdminConnection:
     """One connection to the port at `contact` for several questions, such as its name and what
     depends on that. Raises as `ask`. Not for several threads at once."""
 

@@ -297,10 +297,10 @@ class Reconnector:
         return True
 
 
-def _visit(contact: Contact, key: bytes) -> probe.Visit | None:
+def _visit(contact: Contact, key: bytes) -> probe.AdminConnection | None:
     """Return a connection to the port of that name; None if it does not answer there."""
     try:
-        visit = probe.Visit(contact, secret_=key)
+        visit = probe.AdminConnection(contact, secret_=key)
     except (YarpError, OSError):
         return None
     try:

@@ -32,7 +32,7 @@ class Source(Protocol):
         """The file; and a pipe, if somebody wants to know until when it is looked at."""
 
 
-class Room(Protocol):
+class WritableBlock(Protocol):
     """A piece of our own memory that a program fills."""
 
     def begin(self, head: bytes) -> bool:
@@ -78,7 +78,7 @@ def _make() -> Any:
 
         source: Source | None = None
         offset: int = 0
-        room: Room | None = None
+        room: WritableBlock | None = None
         ended: Callable[[], object] | None = None  # called with its end
 
         def __del__(self) -> None:
@@ -104,7 +104,7 @@ def place_of(blocks: Sequence[Buffer]) -> Place | None:
     source: Source = lease.source
     start = _address(block) - source.address
     first: int = lease.offset
-    room: Room | None = lease.room
+    room: WritableBlock | None = lease.room
     head = blocks[0] if len(blocks) == 2 else b"".join(blocks[:-1])
     begin = start - len(head)
     if begin < first or len(head) > HEADROOM:

@@ -26,7 +26,7 @@ from yarpy.platform.user import user
 from yarpy.threads import undisturbed
 from yarpy.transports.base import Transport
 from yarpy.transports.descriptor import has_input, opened_pair
-from yarpy.transports.opener import Elsewhere, Opener
+from yarpy.transports.opener import MeetingPlace, Opener
 from yarpy.transports.shared.arena import Arena, arena_of, tidy
 from yarpy.transports.shared.borrowed import OTHERS, Borrowed, Shown, adopted
 from yarpy.transports.shared.lease import Source
@@ -316,5 +316,5 @@ class Memory(Opener):
     uses = "memory without a name (memfd)"
 
     @classmethod
-    def meet(cls, place: Elsewhere) -> Transport | None:
+    def meet(cls, place: MeetingPlace) -> Transport | None:
         return open_memory(place.listen, place.port, place.group)

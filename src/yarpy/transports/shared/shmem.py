@@ -22,7 +22,7 @@ from typing import Final
 from yarpy.errors import LocalProtocolError, RemoteProtocolError
 from yarpy.transports.base import Address, Transport
 from yarpy.transports.descriptor import has_input
-from yarpy.transports.opener import Elsewhere, Opener
+from yarpy.transports.opener import MeetingPlace, Opener
 from yarpy.transports.shared.ring import FIRST_SIZE, Ring
 from yarpy.transports.shared.sysv import ELSEWHERE, require
 from yarpy.transports.socket_transport import MSG_DONTWAIT, address_of
@@ -265,6 +265,6 @@ class Shmem(Opener):
     uses = "System V memory of Linux"
 
     @classmethod
-    def meet(cls, place: Elsewhere) -> Transport:
+    def meet(cls, place: MeetingPlace) -> Transport:
         through = place.through
         return open_shmem(place.listen, through.local, through.remote, place.port)

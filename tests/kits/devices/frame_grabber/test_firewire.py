@@ -23,7 +23,7 @@ from yarpy.kits.devices.frame_grabber.responder import FrameGrabberResponder
 from yarpy.kits.devices.frame_grabber.yarp4.functions import FrameGrabberMsgs
 from yarpy.kits.devices.frame_grabber.yarp4.requests import FunctionRequests
 from yarpy.kits.devices.frame_grabber.yarp4.server import Functions
-from yarpy.kits.devices.refusal import Complaints, Refused
+from yarpy.kits.devices.refusal import DeviceErrorLog, Refused
 from yarpy.wire.message import CALL, Message
 
 
@@ -68,7 +68,7 @@ def responder(registers: object | None) -> FrameGrabberResponder:
     camera: Any = FakeCamera()
     if registers is not None:
         camera.firewire = registers
-    access = Access(camera, 0, Complaints("/eye"), threading.Lock())
+    access = Access(camera, 0, DeviceErrorLog("/eye"), threading.Lock())
     return FrameGrabberResponder(access, lambda: Image(camera.image()), "/eye")
 
 

@@ -11,11 +11,11 @@ from yarpy.data.sig.image import Image
 from yarpy.data.value import Vocab
 from yarpy.kits.devices.access import Access
 from yarpy.kits.devices.frame_grabber.responder import FrameGrabberResponder
-from yarpy.kits.devices.refusal import Complaints, Refused
+from yarpy.kits.devices.refusal import DeviceErrorLog, Refused
 
 
 def responder(camera):
-    part = Access(camera, 0, Complaints("/eye"), threading.Lock())
+    part = Access(camera, 0, DeviceErrorLog("/eye"), threading.Lock())
 
     def grab():
         if not hasattr(camera, "image"):

@@ -33,13 +33,13 @@ def serve(names: LocalNames, tmp_path: Path) -> Iterator[Serve]:
         return server
 
     yield make
-    families = [one.family for server in made for one in server.programs]
+    trees = [one.process_tree for server in made for one in server.programs]
     for server in made:
         if not server._closing.is_set():
             server.close()
-    for family in families:
-        while family.members():
-            family.signal(signal.SIGKILL)
+    for process_tree in trees:
+        while process_tree.members():
+            process_tree.signal(signal.SIGKILL)
 
 
 @pytest.fixture

@@ -8,8 +8,8 @@ import pytest
 from support.wait import wait_until
 
 from yarpy.kits.launch.run import program
-from yarpy.kits.launch.run.book import Book, Entry
 from yarpy.kits.launch.run.program import Program
+from yarpy.kits.launch.run.state_folder import Entry, StateFolder
 from yarpy.kits.launch.supervise import process
 
 pytestmark = pytest.mark.skipif(not process.known(), reason="this system has no /proc to look at")
@@ -31,36 +31,36 @@ class Ear:
 
 
 @pytest.fixture
-def book(tmp_path: Path):
-    book = Book("/node", tmp_path)
-    yield book
-    book.close()
+def state(tmp_path: Path):
+    state = StateFolder("/node", tmp_path)
+    yield state
+    state.close()
 
 
-def begin(book: Book, code: str, **more: str) -> Program:
-    entry = Entry(book.fresh(), "it", "python", **more)
-    return program.start(book, entry, [sys.executable, "-c", code], {"FOO": "bar"})
+def begin(state: StateFolder, code: str, **more: str) -> Program:
+    entry = Entry(state.fresh(), "it", "python", **more)
+    return program.start(state, entry, [sys.executable, "-c", code], {"FOO": "bar"})
 
 
-def test_what_it_says_and_how_it_ends(book: Book) -> None:
+def test_what_it_says_and_how_it_ends(state: StateFolder) -> None:
     code = "from os import environ as e; print(e['FOO'], e['YARP_IS_YARPRUN']); exit(3)"
-    found = begin(book, code)
+    found = begin(state, code)
     ear = Ear()
     found.listeners.append(ear)
     wait_until(found.ended)
     found.finish()
     assert ear.lines == ["bar 1"] == [*found.kept] and ear.closed and found.code == 3
-    assert [*book.entries()] == []
+    assert [*state.entries()] == []
 
 
-def test_one_that_is_dead_at_once_and_one_without_a_line_end(book: Book) -> None:
-    found = begin(book, "import os; os.write(1, b'x' * 5000); os.kill(os.getpid(), 9)")
+def test_one_that_is_dead_at_once_and_one_without_a_line_end(state: StateFolder) -> None:
+    found = begin(state, "import os; os.write(1, b'x' * 5000); os.kill(os.getpid(), 9)")
     wait_until(found.ended)
     found.finish()
     assert found.code == -9 and "".join(found.kept) == "x" * 5000
 
 
-def test_the_next_server_finds_it_again(book: Book, tmp_path: Path) -> None:
+def test_the_next_server_finds_it_again(state: StateFolder, tmp_path: Path) -> None:
     gate, said, last = (tmp_path / name for name in ("gate", "said", "last"))
     code = f"""
 import os, time
@@ -73,13 +73,13 @@ print("after", flush=True)
 open({str(said)!r}, "w").close()
 passes({str(last)!r})
 """
-    first = begin(book, code)
+    first = begin(state, code)
     wait_until(first.look)
     first.leave()
     gate.touch()
     wait_until(said.exists)  # while nobody hears it
-    [entry] = book.entries()
-    again = program.found_again(book, entry)
+    [entry] = state.entries()
+    again = program.found_again(state, entry)
     last.touch()
     assert again is not None
     assert again.entry.pid == first.entry.pid
@@ -91,49 +91,49 @@ passes({str(last)!r})
     assert [*again.kept] == ["after"]
 
 
-def test_one_that_was_just_being_started_is_found_by_its_mark(book: Book) -> None:
-    found = begin(book, "import time; time.sleep(600)", port="/log/node/python")
+def test_one_that_was_just_being_started_is_found_by_its_mark(state: StateFolder) -> None:
+    found = begin(state, "import time; time.sleep(600)", port="/log/node/python")
     entry = replace(found.entry, pid=0, began=0, port="/log/node/python")
-    again = program.found_again(book, entry)
+    again = program.found_again(state, entry)
     assert again is not None
     pid = found.entry.pid
     assert (again.entry.pid, again.entry.port) == (pid, f"/log/node/python/{pid}")
-    assert again.family.signal(9)
+    assert again.process_tree.signal(9)
     wait_until(found.ended)
     found.finish()
     again.leave()
-    assert program.found_again(book, entry) is None
+    assert program.found_again(state, entry) is None
 
 
-def test_what_a_program_leaves_behind_counts(book: Book) -> None:
-    found = begin(book, "import os, time\nif os.fork() == 0: time.sleep(600)")
+def test_what_a_program_leaves_behind_counts(state: StateFolder) -> None:
+    found = begin(state, "import os, time\nif os.fork() == 0: time.sleep(600)")
     wait_until(lambda: not found.reap())
     assert found.running and not found.ended()
-    [left] = found.family.members()
+    [left] = found.process_tree.members()
     assert left != found.entry.pid
-    found.family.signal(9)
+    found.process_tree.signal(9)
     wait_until(found.ended)
     found.finish()
 
 
-def test_what_cannot_be_started_leaves_nothing(book: Book, tmp_path: Path) -> None:
-    entry = Entry(book.fresh(), "it", "x")
+def test_what_cannot_be_started_leaves_nothing(state: StateFolder, tmp_path: Path) -> None:
+    entry = Entry(state.fresh(), "it", "x")
     for words, change in ((["nosuch"], {}), (["sleep", "1"], {"workdir": str(tmp_path / "no")})):
         with pytest.raises(OSError, match=r"no program nosuch|working directory"):
-            program.start(book, replace(entry, **change), words, {})
+            program.start(state, replace(entry, **change), words, {})
     text = tmp_path / "text"
     text.write_text("no program")
     text.chmod(0o755)
     with pytest.raises(OSError):
-        program.start(book, entry, ["text"], {}, path=str(text))
-    assert [one.name for one in book.folder.iterdir()] == ["lock"]
+        program.start(state, entry, ["text"], {}, path=str(text))
+    assert [one.name for one in state.folder.iterdir()] == ["lock"]
 
 
-def test_a_program_of_its_working_directory_comes_first(book: Book, tmp_path: Path) -> None:
+def test_a_program_of_its_working_directory_comes_first(state: StateFolder, tmp_path: Path) -> None:
     (tmp_path / "sleep").write_text("#!/bin/sh\necho mine; pwd\n")
     (tmp_path / "sleep").chmod(0o755)
-    entry = Entry(book.fresh(), "it", "sleep", workdir=str(tmp_path))
-    found = program.start(book, entry, ["sleep"], {})
+    entry = Entry(state.fresh(), "it", "sleep", workdir=str(tmp_path))
+    found = program.start(state, entry, ["sleep"], {})
     wait_until(found.ended)
     found.finish()
     assert [*found.kept] == ["mine", str(tmp_path)]

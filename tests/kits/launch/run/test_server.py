@@ -101,7 +101,7 @@ def test_programs_go_on_and_are_found_again(serve, names: LocalNames) -> None:
     with RunClient("/node", names=names) as node:
         pid = node.start("a", ["sleep", "60"]).pid
     [left] = first.close()
-    assert left.entry.pid == pid and left.family.leads
+    assert left.entry.pid == pid and left.process_tree.leads
     serve(ends=True)
     with RunClient("/node", names=names) as node:
         assert [(one.pid, one.tag) for one in node.running()] == [(pid, "a")]
@@ -115,9 +115,9 @@ def test_programs_end_with_their_server_if_asked(serve, names: LocalNames) -> No
         node.start("a", ["sleep", "60"])
         node.start("deaf", [sys.executable, "-c", f"{code}; time.sleep(600)"])
         wait_until(lambda: node.output("deaf"))
-        families = [one.family for one in server.programs]
+        trees = [one.process_tree for one in server.programs]
     assert server.close() == []
-    assert [family.members() for family in families] == [[], []]
+    assert [tree.members() for tree in trees] == [[], []]
 
 
 def test_one_server_of_a_name(serve) -> None:

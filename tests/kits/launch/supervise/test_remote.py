@@ -37,13 +37,13 @@ def serve(network: yarpy.LocalNames, tmp_path: Path) -> Iterator[Serve]:
         return made[-1]
 
     yield make
-    families = [one.family for server in made for one in server.programs]
+    trees = [one.process_tree for server in made for one in server.programs]
     for server in made:
         if not server._closing.is_set():
             server.close()
-    for family in families:
-        while family.members():
-            family.signal(signal.SIGKILL)
+    for process_tree in trees:
+        while process_tree.members():
+            process_tree.signal(signal.SIGKILL)
 
 
 class Started:
@@ -108,7 +108,7 @@ def test_a_program_that_ends_at_another_server_than_its_first(
     wait_until(lambda: started.handle.state == "unknown")
     again = serve()
     wait_until(lambda: started.handle.state == "running")
-    again.programs[0].family.signal(signal.SIGKILL)
+    again.programs[0].process_tree.signal(signal.SIGKILL)
     assert started.end() is None, "it is nobody's child any more"
 
 
@@ -233,7 +233,7 @@ def test_a_supervisor_says_what_it_does_not_know(
     )
     running.start()
     wait_until(lambda: running.units["far"].state == "running")
-    server.programs[0].family.signal(signal.SIGKILL)
+    server.programs[0].process_tree.signal(signal.SIGKILL)
     killed = time.monotonic()
     wait_until(lambda: running.units["far"].restarts == 1)
     assert lasted(killed) < 30

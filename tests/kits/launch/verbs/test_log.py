@@ -11,7 +11,7 @@ from support.cpp_program import CppProgram
 from support.wait import HANG, wait_until
 
 import yarpy
-from yarpy.kits.launch.log.intake import Intake
+from yarpy.kits.launch.log.collector import LogCollector
 from yarpy.kits.launch.verbs import log
 from yarpy.port.assembly import open_hub
 from yarpy.port.keep.log_sender import LogSender
@@ -93,15 +93,15 @@ def test_filters_and_files(cli, names, tmp_path):
 def test_no_follow_ends_when_all_is_told(here, names, monkeypatch):
     waits = []
 
-    def wait(intake, timeout):
+    def wait(collector, timeout):
         """A silence comes when the line has come, and not while a busy machine is slow."""
         if timeout != log.QUIET:
-            return until(intake, timeout)
+            return until(collector, timeout)
         waits.append(timeout)
-        return until(intake, 0.0 if intake.taken else HANG)
+        return until(collector, 0.0 if collector.taken else HANG)
 
-    until = Intake.wait
-    monkeypatch.setattr(Intake, "wait", wait)
+    until = LogCollector.wait
+    monkeypatch.setattr(LogCollector, "wait", wait)
     sender = LogSender(partial(open_hub, names=names), "/log/vm/four/4", yarpy.Bottle)
     sender.put([Packet(line("/log/vm/four/4", "last"))])
     done = here("log", "--no-follow", "--colour", "/four/")

@@ -7,7 +7,7 @@ import pytest
 from support.wait import HANG, wait_until
 
 from yarpy.peers.ros2.dds import pair as module
-from yarpy.peers.ros2.dds.pair import Came, Pair, joined, parted, topics
+from yarpy.peers.ros2.dds.pair import Pair, ServiceSample, joined, parted, topics
 from yarpy.peers.ros2.dds.participant import POOL
 from yarpy.peers.ros2.message.library import default_library
 from yarpy.peers.ros2.name import Node
@@ -21,7 +21,7 @@ def test_golden_bytes() -> None:
     kind = default_library().service("example_interfaces/AddTwoInts")
     body = b"".join(kind.Request(a=5, b=37).to_ros())
     assert joined(0x0102030405060708, 7, body) == QUESTION
-    assert parted(QUESTION, 3) == Came(0x0102030405060708, 7, body, 3)
+    assert parted(QUESTION, 3) == ServiceSample(0x0102030405060708, 7, body, 3)
     assert topics("/robot/add") == ("rq/robot/addRequest", "rr/robot/addReply")
 
 
@@ -31,8 +31,8 @@ def test_what_is_no_question(body: bytes) -> None:
 
 
 def test_nothing_but_a_header() -> None:
-    came = parted(QUESTION[:20], 0)
-    assert came is not None and came.body == b"\0\1\0\0"
+    sample = parted(QUESTION[:20], 0)
+    assert sample is not None and sample.body == b"\0\1\0\0"
 
 
 def test_an_answer_waits_for_its_reader(
@@ -42,8 +42,8 @@ def test_an_answer_waits_for_its_reader(
     once."""
     kind = default_library().service("example_interfaces/AddTwoInts")
     part, node = POOL.take(0), Node("/", own[1:])
-    answered: Queue[Came] = Queue()
-    asked: Queue[Came] = Queue()
+    answered: Queue[ServiceSample] = Queue()
+    asked: Queue[ServiceSample] = Queue()
     server = Pair(part, node, own, kind, Qos(), True, asked.put)
     client = Pair(part, node, own, kind, Qos(), False, answered.put)
     try:

@@ -21,7 +21,7 @@ def test_all_kinds(names: yarpy.LocalNames) -> None:
     def add(question: Question) -> None:
         question.answer([question.request.a + question.request.b])
 
-    hearer = rmw.hearer("/rmw/x", "std_msgs/msg/String", heard.append, worker, None)
+    reader = rmw.reader("/rmw/x", "std_msgs/msg/String", heard.append, worker, None)
     writer = rmw.writer("/rmw/x", "std_msgs/msg/String", None)
     answerer = rmw.answerer("/rmw/add", ADD, add, worker, None)
     caller = rmw.caller("/rmw/add", ADD, None)
@@ -31,5 +31,5 @@ def test_all_kinds(names: yarpy.LocalNames) -> None:
         assert heard[0].data == "hello"
         assert caller.wait(HANG) and caller.call([1, 2], HANG).sum == 3
     finally:
-        for item in (hearer, writer, answerer, caller, worker, rmw):
+        for item in (reader, writer, answerer, caller, worker, rmw):
             item.close()  # type: ignore[attr-defined]

@@ -49,13 +49,13 @@ def test_bytes_that_are_no_message(
 ) -> None:
     heard: list[Any] = []
     with ros2.Node("/a") as a, ros2.Node("/b") as b:
-        hearer = b.subscriber("/t", "std_msgs/msg/String", heard.append)
+        reader = b.subscriber("/t", "std_msgs/msg/String", heard.append)
         out = a.publisher("/t", "std_msgs/msg/String")
         wait_until(lambda: out.write("first") or heard)
         from yarpy.peers.ros2.carrier import Outgoing
 
         out.give(Outgoing(out.kind, (b"\0\1\0\0\xff\xff\xff\x7f",)))
-        wait_until(lambda: hearer.dropped)
+        wait_until(lambda: reader.dropped)
         count = len(heard)
         wait_until(lambda: out.write("next") or len(heard) > count)
     assert "is lost" in caplog.text

@@ -11,7 +11,7 @@ from typing import Any
 from wrapyfi.utils._shipped import for_tag, for_type
 from wrapyfi.utils._tensors import gathered, planted
 from wrapyfi.utils.core_utils import PluginRegistrar
-from yarpy.kits.wrap.tree import OWN, PLAIN, TAG, Planter, untag
+from yarpy.kits.wrap.tree import OWN, PLAIN, TAG, TreeEncoder, untag
 
 
 class JsonEncoder(json.JSONEncoder):
@@ -22,29 +22,29 @@ class JsonEncoder(json.JSONEncoder):
         known += ("separators", "default")
         options = {name: kwargs.pop(name) for name in [*kwargs] if name not in known}
         super().__init__(**kwargs)
-        self._usual, self._plugged = _Planter(options), _Plugged(options)
+        self._usual, self._plugged = _LibraryEncoder(options), _PluginEncoder(options)
 
     def encode(self, o: Any) -> str:
         return "".join(self.iterencode(o, True))
 
     def iterencode(self, o: Any, _one_shot: bool = False) -> Any:
-        planter = self._plugged if PluginRegistrar.encoder_registry else self._usual
-        return super().iterencode(planter.plant(o), _one_shot)
+        encoder = self._plugged if PluginRegistrar.encoder_registry else self._usual
+        return super().iterencode(encoder.encode(o), _one_shot)
 
 
-class _Planter(Planter):
+class _LibraryEncoder(TreeEncoder):
     """Knows the libraries that Wrapyfi has plug-ins for."""
 
     def __init__(self, options: dict[str, Any]) -> None:
         super().__init__(None)
         self._options = options
 
-    def _plant_other(self, value: Any, below: int) -> Any:
+    def _encode_other(self, value: Any, below: int) -> Any:
         found = self._by(for_type(type(value)), value)
         if found is None and hasattr(value, "shape"):
             tag = planted(value)
             found = None if tag is None else {TAG: tag}
-        return super()._plant_other(value, below) if found is None else found
+        return super()._encode_other(value, below) if found is None else found
 
     def _by(self, plugin: Any, value: Any) -> Any:
         """The tree that a plug-in makes of a value; None for none."""
@@ -52,19 +52,21 @@ class _Planter(Planter):
         if not done:
             return None
         name, *rest = tree[TAG]
-        return {TAG: [name, *(x if type(x) in PLAIN else Planter.plant(self, x) for x in rest)]}
+        return {
+            TAG: [name, *(x if type(x) in PLAIN else TreeEncoder.encode(self, x) for x in rest)]
+        }
 
 
-class _Plugged(_Planter):
+class _PluginEncoder(_LibraryEncoder):
     """Asks the plug-ins of users first, about every value."""
 
     plain = frozenset()
 
-    def plant(self, value: Any, depth: int = 0) -> Any:
+    def encode(self, value: Any, depth: int = 0) -> Any:
         found = self._by(PluginRegistrar.nearest(type(value)), value)
         if found is None and type(value) in PLAIN:
             return value
-        return super().plant(value, depth) if found is None else found
+        return super().encode(value, depth) if found is None else found
 
 
 class JsonDecodeHook:

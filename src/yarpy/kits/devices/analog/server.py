@@ -30,7 +30,7 @@ from yarpy.kits.devices.access import Access
 from yarpy.kits.devices.closeable import Closeable, prefix
 from yarpy.kits.devices.kind import items, number, whole, word
 from yarpy.kits.devices.publisher import Publisher
-from yarpy.kits.devices.refusal import Complaints, Refused
+from yarpy.kits.devices.refusal import DeviceErrorLog, Refused
 from yarpy.log import logger
 from yarpy.names.base import NameClient
 from yarpy.port.dialects import Dialects
@@ -66,7 +66,7 @@ class AnalogSensorServer(Closeable):
     ) -> None:
         self.name = name = prefix(name)
         self.device = device
-        self._sensor = Access(device, 0, Complaints(name), threading.Lock())
+        self._sensor = Access(device, 0, DeviceErrorLog(name), threading.Lock())
         if not self._sensor.has("channels"):
             raise ValueError(f"{name}: the device needs channels(), a number for each")
         self._stamp = Stamp()

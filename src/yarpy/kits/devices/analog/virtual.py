@@ -27,7 +27,7 @@ from yarpy.errors import DecodeError
 from yarpy.kits.devices.access import Access
 from yarpy.kits.devices.closeable import Closeable, prefix
 from yarpy.kits.devices.kind import number
-from yarpy.kits.devices.refusal import Complaints, Refused
+from yarpy.kits.devices.refusal import DeviceErrorLog, Refused
 from yarpy.names.base import NameClient
 from yarpy.port.port import BufferedPort
 from yarpy.wire.message import Message
@@ -70,7 +70,7 @@ class VirtualAnalogServer(Closeable):
         names: NameClient | None = None,
     ) -> None:
         self.name = name = prefix(name)
-        self._complain = Complaints(name)
+        self._complain = DeviceErrorLog(name)
         lock = threading.Lock()
         self._targets: list[tuple[Access, Network]] = []
         for key, network in networks.items():

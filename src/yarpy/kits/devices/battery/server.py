@@ -30,7 +30,7 @@ from yarpy.kits.devices.closeable import Closeable, prefix
 from yarpy.kits.devices.declared import Status
 from yarpy.kits.devices.kind import word
 from yarpy.kits.devices.publisher import Publisher
-from yarpy.kits.devices.refusal import Complaints, Refused
+from yarpy.kits.devices.refusal import DeviceErrorLog, Refused
 from yarpy.kits.devices.service import DeviceService
 from yarpy.kits.devices.status import OK
 from yarpy.names.base import NameClient
@@ -64,7 +64,7 @@ class BatteryServer(Closeable):
         self.name = name = prefix(name)
         self.device = device
         self._newer = newer
-        self._battery = Access(device, 0, Complaints(name), threading.Lock())
+        self._battery = Access(device, 0, DeviceErrorLog(name), threading.Lock())
         if not self._battery.has("charge"):
             raise ValueError(f"{name}: the device needs charge(), in percent")
         self._functions = Functions(self.info, newer)

@@ -12,7 +12,7 @@ from typing import Any, Final
 from yarpy import clock
 from yarpy.kits.devices.access import Access
 from yarpy.kits.devices.kind import FLOAT, JOINT_TYPE, Kind
-from yarpy.kits.devices.refusal import Complaints, Refused
+from yarpy.kits.devices.refusal import DeviceErrorLog, Refused
 
 #: Member with the last targets -> the method that sets them.
 TARGETS: Final = {
@@ -31,7 +31,7 @@ class Board(Access):
     """A control board. Remembers the last targets for devices that do not."""
 
     def __init__(self, device: object, name: str) -> None:
-        super().__init__(device, 0, Complaints(name), threading.Lock())
+        super().__init__(device, 0, DeviceErrorLog(name), threading.Lock())
         self.name = name
         names = self.ask("axis_names") if self.has("axis_names") else None
         if isinstance(names, str) or names is None or not len(names):

@@ -29,7 +29,7 @@ from yarpy.kits.devices.control_board.responder import FAIL, Responder
 from yarpy.kits.devices.control_board.state import State
 from yarpy.kits.devices.control_board.yarp4.server import Functions
 from yarpy.kits.devices.publisher import Publisher
-from yarpy.kits.devices.refusal import Complaints, Refused
+from yarpy.kits.devices.refusal import DeviceErrorLog, Refused
 from yarpy.log import logger
 from yarpy.names.base import NameClient
 from yarpy.port.dialects import Dialects
@@ -64,7 +64,7 @@ class ControlBoardServer(Closeable):
         self.device = device
         self._board = Board(device, name)
         self._responder = Responder(self._board)
-        self._complain = Complaints(name)
+        self._complain = DeviceErrorLog(name)
         self._stamp = Stamp()
         with ExitStack() as resources:
             self._rpc = resources.enter_context(

@@ -25,7 +25,7 @@ from yarpy.kits.devices.closeable import Closeable, prefix
 from yarpy.kits.devices.controllers.client import VERSION
 from yarpy.kits.devices.kind import word
 from yarpy.kits.devices.publisher import Publisher
-from yarpy.kits.devices.refusal import Complaints, Refused
+from yarpy.kits.devices.refusal import DeviceErrorLog, Refused
 from yarpy.names.base import NameClient
 from yarpy.port.port import BufferedPort
 from yarpy.port.rpc import RpcServer
@@ -61,7 +61,7 @@ class ControllerServer(Closeable):
         self.name = name = prefix(name)
         self.device = device
         self._lock = threading.Lock()
-        self._complain = Complaints(name)
+        self._complain = DeviceErrorLog(name)
         self._contexts: list[dict[str, Any] | None] = [self._settings()]
         self._shares: set[float] = set()
         self._passed: set[float] = set()

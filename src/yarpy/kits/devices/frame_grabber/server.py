@@ -26,7 +26,7 @@ from yarpy.kits.devices.frame_grabber.interface import Camera
 from yarpy.kits.devices.frame_grabber.responder import FrameGrabberResponder
 from yarpy.kits.devices.frame_grabber.yarp4.server import Functions
 from yarpy.kits.devices.publisher import Publisher
-from yarpy.kits.devices.refusal import Complaints, Refused
+from yarpy.kits.devices.refusal import DeviceErrorLog, Refused
 from yarpy.names.base import NameClient
 from yarpy.port.port import BufferedPort
 from yarpy.port.rpc import RpcServer
@@ -67,7 +67,7 @@ class FrameGrabberServer(Closeable):
     ) -> None:
         self.name = name = prefix(name)
         self.device = device
-        self._camera = Access(device, 0, Complaints(name), threading.Lock())
+        self._camera = Access(device, 0, DeviceErrorLog(name), threading.Lock())
         if not self._camera.has("image"):
             raise ValueError(f"{name}: the device needs image(), which returns the next picture")
         self._responder = FrameGrabberResponder(self._camera, self._grab, name)

@@ -26,7 +26,7 @@ from yarpy.data.value import Vocab
 from yarpy.errors import DecodeError
 from yarpy.kits.devices.access import Access
 from yarpy.kits.devices.closeable import Closeable, prefix
-from yarpy.kits.devices.refusal import Complaints, Refused
+from yarpy.kits.devices.refusal import DeviceErrorLog, Refused
 from yarpy.names.base import NameClient
 from yarpy.port.port import BufferedPort
 from yarpy.port.rpc import RpcServer
@@ -44,7 +44,7 @@ class FrameWriterServer(Closeable):
     def __init__(self, name: str, device: object, *, names: NameClient | None = None) -> None:
         self.name = name = prefix(name)
         self.device = device
-        self._complain = Complaints(name)
+        self._complain = DeviceErrorLog(name)
         self._screen = Access(device, 0, self._complain, threading.Lock())
         if not self._screen.has("show"):
             raise ValueError(f"{name}: the device needs show(image)")

@@ -27,7 +27,7 @@ from yarpy.data.sig.vector import Vector
 from yarpy.data.stamp import Stamp
 from yarpy.errors import DecodeError, Timeout
 from yarpy.kits.devices.closeable import Closeable, local_prefix
-from yarpy.kits.devices.refusal import Complaints
+from yarpy.kits.devices.refusal import DeviceErrorLog
 from yarpy.kits.devices.simulated.plugin import values
 from yarpy.names.base import NameClient
 from yarpy.port.port import BufferedPort
@@ -71,7 +71,7 @@ class TopicBoard(Closeable):
             raise ValueError(f"the form of commands is {' or '.join(FORMS)}, not {form}")
         local = local_prefix(local, "/rosControlBoard")
         self._states, self._form, self._timeout = states, form, timeout
-        self._complain = Complaints(local)
+        self._complain = DeviceErrorLog(local)
         self._changed = threading.Condition()  # guards the ones below
         self._joints: dict[str, list[float | None]] = {}  # name -> position, velocity, effort
         self._time, self._came = 0.0, 0.0

@@ -37,7 +37,7 @@ from yarpy.kits.devices.laser.functions import (
 )
 from yarpy.kits.devices.laser.interface import CONDITIONS
 from yarpy.kits.devices.publisher import Publisher
-from yarpy.kits.devices.refusal import Complaints, Refused
+from yarpy.kits.devices.refusal import DeviceErrorLog, Refused
 from yarpy.kits.devices.service import DeviceService
 from yarpy.kits.devices.status import FAILED, OK
 from yarpy.log import logger
@@ -75,7 +75,7 @@ class LaserServer(Closeable):
     ) -> None:
         self.name = name = prefix(name)
         self.device = device
-        self._laser = Access(device, 0, Complaints(name), threading.Lock())
+        self._laser = Access(device, 0, DeviceErrorLog(name), threading.Lock())
         if not self._laser.has("ranges"):
             raise ValueError(f"{name}: the device needs ranges(), in metres")
         self._functions = Functions(self.read, self.change, name)

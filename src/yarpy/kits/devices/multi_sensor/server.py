@@ -33,7 +33,7 @@ from yarpy.kits.devices.multi_sensor.metadata import (
     metadata,
 )
 from yarpy.kits.devices.publisher import Publisher
-from yarpy.kits.devices.refusal import Complaints, Refused
+from yarpy.kits.devices.refusal import DeviceErrorLog, Refused
 from yarpy.names.base import NameClient
 from yarpy.port.dialects import Dialects
 from yarpy.port.port import BufferedPort
@@ -68,7 +68,7 @@ class MultiSensorServer(Closeable):
     ) -> None:
         self.name = name = prefix(name)
         self.device = device
-        self._sensors = Access(device, 0, Complaints(name), threading.Lock())
+        self._sensors = Access(device, 0, DeviceErrorLog(name), threading.Lock())
         self._last: dict[str, dict[str, _Measurement]] = {}
         self._read_first()
         newer = newer or any(self._last.get(kind) for kind in [*KINDS][OLDER:])

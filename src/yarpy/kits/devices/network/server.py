@@ -28,7 +28,7 @@ from yarpy.kits.devices.network.functions import functions_of
 from yarpy.kits.devices.network.model import Interface, Member
 from yarpy.kits.devices.network.words import answer, arguments, asked, fixed
 from yarpy.kits.devices.publisher import Publisher
-from yarpy.kits.devices.refusal import Complaints, Refused
+from yarpy.kits.devices.refusal import DeviceErrorLog, Refused
 from yarpy.kits.devices.status import FAILED, MISSING, OK, older, oldest
 from yarpy.kits.thrift.structure import Struct
 from yarpy.log import logger
@@ -58,7 +58,7 @@ class Server(Closeable):
         self.name = name = prefix(name)
         self.device = device
         self._newer = newer
-        self._complain = Complaints(name)
+        self._complain = DeviceErrorLog(name)
         self._access = Access(device, 0, self._complain, threading.Lock())
         if not self._access.offers(interface.members):
             there = ", ".join(interface.members)

@@ -18,7 +18,7 @@ from yarpy.errors import DecodeError
 from yarpy.kits.devices.closeable import Closeable
 from yarpy.kits.devices.interfaces.localization import Localization2D
 from yarpy.kits.devices.kind import number
-from yarpy.kits.devices.refusal import Complaints, Refused
+from yarpy.kits.devices.refusal import DeviceErrorLog, Refused
 from yarpy.kits.devices.simulated.laser import SimulatedLaser
 from yarpy.names.base import NameClient
 from yarpy.port.port import BufferedPort
@@ -42,7 +42,7 @@ class LocalizedLaser(SimulatedLaser, Closeable):
         super().__init__(scene, **settings)
         if not port and not server:
             raise ValueError("who says where the laser is: a port, or a localization server?")
-        self._complain = Complaints(port or server)
+        self._complain = DeviceErrorLog(port or server)
         self._localization: Localization2D | None = None
         with ExitStack() as resources:
             if port:

@@ -2,7 +2,7 @@
 
 Rules: it runs in a session of its own, reads from a pipe in the file system that never ends, or
 from nothing, and writes to a file; so it needs nobody. What it says is told on by `look`, which its
-server calls again and again. It has ended when nobody of its family lives.
+server calls again and again. It has ended when no process of its tree lives.
 """
 
 from __future__ import annotations
@@ -19,10 +19,10 @@ from dataclasses import replace
 from pathlib import Path
 from typing import Final, Protocol
 
-from yarpy.kits.launch.run import family
-from yarpy.kits.launch.run.book import Book, Entry
-from yarpy.kits.launch.run.family import Family
+from yarpy.kits.launch.run import process_tree
 from yarpy.kits.launch.run.output import Output
+from yarpy.kits.launch.run.process_tree import ProcessTree
+from yarpy.kits.launch.run.state_folder import Entry, StateFolder
 from yarpy.limit import RUN_KEPT
 
 ORPHANS: Final = 0.5  # seconds between looks for those that a program has left behind
@@ -48,16 +48,16 @@ class Program:
     number of a signal, None while it runs and where it was somebody else's child."""
 
     def __init__(
-        self, book: Book, entry: Entry, child: subprocess.Popen[bytes] | None = None
+        self, state: StateFolder, entry: Entry, child: subprocess.Popen[bytes] | None = None
     ) -> None:
         self.entry = entry
-        self.family = Family(entry.pid, entry.id, entry.began)
+        self.process_tree = ProcessTree(entry.pid, entry.id, entry.began)
         self.code: int | None = None
         self.kept: deque[str] = deque(maxlen=RUN_KEPT)
         self.listeners: list[Listener] = []
-        self._book, self._child = book, child
-        self._place = book.place(entry.id)
-        self._output = Output(book.path(entry.id, "out"), self._place)
+        self._state, self._child = state, child
+        self._place = state.place(entry.id)
+        self._output = Output(state.path(entry.id, "out"), self._place)
         self._looked = 0.0
         self._orphaned = True  # whether somebody lived without the first process, the last time
         self._told = 0
@@ -67,12 +67,12 @@ class Program:
         if self._child is not None:
             self.code = self._child.poll()
             return self.code is None
-        return self.family.leads
+        return self.process_tree.leads
 
     @property
     def running(self) -> bool:
-        """Return whether anybody of the family lives."""
-        return self.reap() or bool(self.family.members())
+        """Return whether any process of its tree lives."""
+        return self.reap() or bool(self.process_tree.members())
 
     def look(self) -> bool:
         """Tell what came, and return whether there may be more at once."""
@@ -97,7 +97,7 @@ class Program:
         if self._orphaned and now - self._looked < ORPHANS and self._looked:
             return False
         self._looked = now
-        self._orphaned = bool(self.family.members())
+        self._orphaned = bool(self.process_tree.members())
         return not self._orphaned
 
     def finish(self) -> None:
@@ -106,7 +106,7 @@ class Program:
             pass
         self._tell(self._output.read(whole=True))
         self.leave()
-        self._book.remove(self.entry.id)
+        self._state.remove(self.entry.id)
 
     def leave(self) -> None:
         """Hear no more of it; it goes on."""
@@ -124,7 +124,7 @@ class Program:
         place = self._output.read_so_far
         if place != self._place:
             self._place = place
-            self._book.set_place(self.entry.id, place)
+            self._state.set_place(self.entry.id, place)
 
 
 def _lost(count: int) -> str:
@@ -132,7 +132,7 @@ def _lost(count: int) -> str:
 
 
 def start(
-    book: Book,
+    state: StateFolder,
     entry: Entry,
     words: Sequence[str],
     variables: Mapping[str, str],
@@ -144,17 +144,17 @@ def start(
     not choose. relays: somebody tells on what it says. Raises OSError."""
     environment = {key: value for key, value in os.environ.items() if key not in _OWN}
     environment |= {"YARP_IS_YARPRUN": "1", "YARPRUN_IS_FORWARDING_LOG": "1" if relays else "0"}
-    environment |= {**variables, family.MARK: entry.id}
+    environment |= {**variables, process_tree.MARK: entry.id}
     folder = entry.workdir or None
     if folder is not None and not Path(folder).is_dir():
         raise NotADirectoryError(f"cannot set working directory {folder}")
     file = path or _file(words[0], folder, environment)
     flags = os.O_WRONLY | os.O_CREAT | os.O_TRUNC | os.O_APPEND
-    out = os.open(book.path(entry.id, "out"), flags, 0o600)
+    out = os.open(state.path(entry.id, "out"), flags, 0o600)
     feed = -1
     try:
-        feed = open_input(book, entry) if entry.uuid else os.open(os.devnull, os.O_RDONLY)
-        book.write(entry)
+        feed = open_input(state, entry) if entry.uuid else os.open(os.devnull, os.O_RDONLY)
+        state.write(entry)
         child = subprocess.Popen(
             [words[0], *words[1:]],
             executable=file,
@@ -166,24 +166,24 @@ def start(
             start_new_session=True,
         )
     except BaseException:
-        book.remove(entry.id)
+        state.remove(entry.id)
         raise
     finally:
         os.close(out)
         if feed >= 0:
             os.close(feed)
-    entry = replace(entry, pid=child.pid, began=family.began(child.pid))
+    entry = replace(entry, pid=child.pid, began=process_tree.began(child.pid))
     if entry.port:
         entry = replace(entry, port=f"{entry.port}/{child.pid}")
     with suppress(OSError):  # a full disk: it runs, and is lost with this server
-        book.write(entry)
-    return Program(book, entry, child)
+        state.write(entry)
+    return Program(state, entry, child)
 
 
-def open_input(book: Book, entry: Entry) -> int:
+def open_input(state: StateFolder, entry: Entry) -> int:
     """Open the input of a program, for both ends: then none of them ever sees an end of it. Raises
     OSError."""
-    pipe = book.path(entry.id, "in")
+    pipe = state.path(entry.id, "in")
     if sys.platform == "win32":
         raise OSError("Windows has no pipes in the file system")
     with suppress(FileExistsError):
@@ -202,15 +202,15 @@ def _file(name: str, folder: str | None, environment: Mapping[str, str]) -> str:
     return found
 
 
-def found_again(book: Book, entry: Entry) -> Program | None:
+def found_again(state: StateFolder, entry: Entry) -> Program | None:
     """Return a program that another server has started, None if it has ended."""
     if not entry.pid:
-        pid = family.leader(entry.id)
+        pid = process_tree.leader(entry.id)
         port = f"{entry.port}/{pid}" if entry.port else ""
-        entry = replace(entry, pid=pid, began=family.began(pid) if pid else 0, port=port)
+        entry = replace(entry, pid=pid, began=process_tree.began(pid) if pid else 0, port=port)
         if not pid:
             return None
-        book.write(entry)
-    if not Family(entry.pid, entry.id, entry.began).members():
+        state.write(entry)
+    if not ProcessTree(entry.pid, entry.id, entry.began).members():
         return None
-    return Program(book, entry)
+    return Program(state, entry)

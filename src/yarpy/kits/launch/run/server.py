@@ -28,12 +28,12 @@ from yarpy.errors import AddressError, DecodeError, LocalProtocolError, YarpErro
 from yarpy.kits.launch.run import program as programs
 from yarpy.kits.launch.run import request as requests
 from yarpy.kits.launch.run.allowed import Allowed, located
-from yarpy.kits.launch.run.book import Book, Entry
 from yarpy.kits.launch.run.command_line import variables_of, words_of
 from yarpy.kits.launch.run.permission import RunGate
 from yarpy.kits.launch.run.program import Program
 from yarpy.kits.launch.run.relay import LogRelay, TerminalRelay
 from yarpy.kits.launch.run.request import Request, aborted, started
+from yarpy.kits.launch.run.state_folder import Entry, StateFolder
 from yarpy.limit import RUN_PROGRAMS, RUN_REQUEST
 from yarpy.link.begin.admission import Gate
 from yarpy.log import logger
@@ -53,8 +53,8 @@ log = logger("yarpy.run")
 
 class RunServer:
     """Starts programs for those who may. log: the logger that all programs are told to, "" for
-    none. ends: they end with the server. folder: of its books (`book`). on_exit: called when
-    somebody asks the server to end. Raises AddressError, NoNameServer."""
+    none. ends: they end with the server. folder: of what it keeps (`state_folder`). on_exit: called
+    when somebody asks the server to end. Raises AddressError, NoNameServer."""
 
     def __init__(
         self,
@@ -80,13 +80,13 @@ class RunServer:
         self._count = 0
         self._closing = threading.Event()
         self._news = threading.Event()
-        self._book = Book(name, folder)
+        self._state = StateFolder(name, folder)
         try:
             self._port = RpcServer(
                 name, self._answer, names=names, gate=self._gate, limit=RUN_REQUEST
             )
         except BaseException:
-            self._book.close()
+            self._state.close()
             raise
         self._find_again()
         with suppress(YarpError):  # servers of other systems keep no such notes
@@ -130,7 +130,7 @@ class RunServer:
         for one in (*left, *self._last):
             for listener in one.listeners:
                 listener.wait(until - time.monotonic())
-        self._book.close()
+        self._state.close()
         linger.remove(self)
         return left
 
@@ -146,15 +146,15 @@ class RunServer:
     # -- the watch --------------------------------------------------------------------------------
 
     def _find_again(self) -> None:
-        for entry in self._book.entries():
+        for entry in self._state.entries():
             try:
-                found = programs.found_again(self._book, entry)
+                found = programs.found_again(self._state, entry)
             except OSError as error:
                 log.warning("%s: %s is lost: %s", self._name, entry.tag, error)
                 continue
             if found is None:
                 log.info("%s: %s has ended meanwhile", self._name, entry.tag)
-                self._book.remove(entry.id)
+                self._state.remove(entry.id)
                 continue
             log.info("%s: %s still runs as process %d", self._name, entry.tag, entry.pid)
             self._programs.append(found)
@@ -187,12 +187,12 @@ class RunServer:
         """Ask all to end, and make them at that time."""
         found = self.programs
         for one in found:
-            one.family.signal(signal.SIGTERM)
+            one.process_tree.signal(signal.SIGTERM)
         while time.monotonic() < until and any(one.running for one in found):
             time.sleep(0.02)
         for one in found:
             while one.running:  # those who are just being started are new
-                one.family.signal(KILL)
+                one.process_tree.signal(KILL)
                 time.sleep(0.01)
         for one in found:
             self._forget(one)
@@ -216,7 +216,7 @@ class RunServer:
                 return Bottle(["sigterm " + self._signal(tag, signal.SIGTERM)])
             case "sigtermall":
                 for one in self.programs:
-                    one.family.signal(signal.SIGTERM)
+                    one.process_tree.signal(signal.SIGTERM)
                 return Bottle(["sigtermall OK"])
             case "ps":
                 return Bottle(map(_shown, (one for one in self.programs if one.running)))
@@ -258,7 +258,7 @@ class RunServer:
     def _signal(self, tag: str, number: int) -> str:
         if not 0 < number < signal.NSIG:
             return "FAILED"
-        sent = [one.family.signal(number) for one in self._tagged(tag)]
+        sent = [one.process_tree.signal(number) for one in self._tagged(tag)]
         self._news.set()
         return "OK" if any(sent) else "FAILED"
 
@@ -295,7 +295,7 @@ class RunServer:
             label = variables.get("YARP_LOG_PROCESS_LABEL", "")
             shown = os.path.basename(words[0]) + (f"[{label}]" if label else "")
             entry = Entry(
-                self._book.fresh(),
+                self._state.fresh(),
                 tag,
                 command,
                 request.text("env"),
@@ -305,7 +305,7 @@ class RunServer:
                 uuid=f"{self._name}/{os.getpid()}/{tag}-{count}" if "stdio" in request else "",
             )
             found = programs.start(
-                self._book,
+                self._state,
                 entry,
                 words,
                 variables,
@@ -329,7 +329,7 @@ class RunServer:
             found.listeners.append(LogRelay(entry.port, entry.logger, self._names))
         if entry.uuid:
             try:
-                feed = programs.open_input(self._book, entry)
+                feed = programs.open_input(self._state, entry)
                 relay = TerminalRelay(entry.uuid, feed, self._gate, self._names)
                 found.listeners.append(relay)
             except (OSError, YarpError) as error:

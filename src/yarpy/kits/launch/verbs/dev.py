@@ -27,7 +27,7 @@ from yarpy.cli.stderr import complain, warn
 from yarpy.scope import Waiter
 
 if TYPE_CHECKING:
-    from yarpy.kits.launch.robot.alone import Alone
+    from yarpy.kits.launch.robot.standalone import StandaloneDevice
 
 _AGAIN: Final = 0.5  # seconds until a device that does not open is tried once more
 
@@ -54,7 +54,7 @@ def command(
     wait: float,
 ) -> int:
     """Open a device and serve it."""
-    from yarpy.kits.launch.robot.alone import types
+    from yarpy.kits.launch.robot.standalone import types
 
     if given and not given[0].startswith("-"):
         if device is None:
@@ -112,16 +112,16 @@ def _unknown(kind: str) -> str:
     )
 
 
-def _opened(options: yarpy.Property, wait: float) -> Alone | None:
+def _opened(options: yarpy.Property, wait: float) -> StandaloneDevice | None:
     from yarpy.kits.devices.wrapper import server_of
-    from yarpy.kits.launch.robot.alone import Alone
+    from yarpy.kits.launch.robot.standalone import StandaloneDevice
     from yarpy.registry import devices
 
     until = time.monotonic() + wait
     told = ""
     while True:
         try:
-            return Alone(options, devices.load, server_of)
+            return StandaloneDevice(options, devices.load, server_of)
         except Exception as error:  # whatever a driver raises
             why = f"{options['device']} does not open: {error or type(error).__name__}"
         left = until - time.monotonic()
@@ -134,7 +134,7 @@ def _opened(options: yarpy.Property, wait: float) -> Alone | None:
         time.sleep(min(left, _AGAIN))
 
 
-def _run(opened: Alone) -> int:
+def _run(opened: StandaloneDevice) -> int:
     over = Waiter()
 
     def answer(message: yarpy.Message) -> list[yarpy.Vocab]:

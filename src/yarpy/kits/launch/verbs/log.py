@@ -39,8 +39,8 @@ from yarpy.port.keep.log_sender import LOGGER
 from yarpy.transports.bind import SETTING
 
 if TYPE_CHECKING:
-    from yarpy.kits.launch.log.intake import Intake
-    from yarpy.kits.launch.log.kept import Kept
+    from yarpy.kits.launch.log.collector import LogCollector
+    from yarpy.kits.launch.log.log_file import LogFile
     from yarpy.kits.launch.page.log_page import LogPage
     from yarpy.port.keep.log_line import LogLine
 
@@ -83,26 +83,26 @@ def command(
     colour: bool | None,
 ) -> int:
     """Show what the programs of the network log, and keep it."""
+    from yarpy.kits.launch.log.collector import LogCollector
     from yarpy.kits.launch.log.filter import Filter, expression
-    from yarpy.kits.launch.log.intake import Intake
-    from yarpy.kits.launch.log.kept import open_kept
+    from yarpy.kits.launch.log.log_file import open_log_file
 
     wanted = Filter(level, program, component, expression(grep))
     with ExitStack() as open_:
         files = []
         for path in paths:
-            files.append(open_kept(path))
+            files.append(open_log_file(path))
             open_.callback(files[-1].close)
         shown = _page(open_) if page else None
-        intake = Intake(partial(_open, name), pattern)
-        open_.callback(intake.close)
+        collector = LogCollector(partial(_open, name), pattern)
+        open_.callback(collector.close)
         screen = _Screen(as_json, _coloured(colour))
         lost = 0
 
         def show() -> bool:
             nonlocal lost
-            pairs = intake.read(0.0)
-            lost = _tell_lost(intake, lost)
+            pairs = collector.read(0.0)
+            lost = _tell_lost(collector, lost)
             if shown is not None:
                 shown.lost = lost
                 shown.add([line for line, _ in pairs])
@@ -116,15 +116,15 @@ def command(
             while True:
                 with held():  # what is shown is in the files, too
                     some = show()
-                news = some or intake.wait(QUIET if no_follow else None)
-                if intake.over or (not news and intake.joined):
+                news = some or collector.wait(QUIET if no_follow else None)
+                if collector.over or (not news and collector.joined):
                     break
         except Interrupted:
             until = time.monotonic() + ENDING
             while show() and time.monotonic() < until:
                 pass
-            if intake.waiting:
-                warn(f"{intake.waiting} lines were not shown any more")
+            if collector.waiting:
+                warn(f"{collector.waiting} lines were not shown any more")
     return 0
 
 
@@ -157,14 +157,14 @@ def _page(open_: ExitStack) -> LogPage:
     return shown
 
 
-def _tell_lost(intake: Intake, before: int) -> int:
-    lost = intake.lost
+def _tell_lost(collector: LogCollector, before: int) -> int:
+    lost = collector.lost
     if lost > before:
         warn(f"{lost - before} lines are lost: they came faster than they were shown")
     return lost
 
 
-def _keep(files: list[Kept], pairs: list[Any]) -> None:
+def _keep(files: list[LogFile], pairs: list[Any]) -> None:
     for file in files:
         for line, message in pairs:
             file.add(line, message)

@@ -104,7 +104,7 @@ def command(
         (complain if problem.fatal else warn)(f"{problem.where}: {problem.text}")
     if application.fatal:
         return 1
-    wish = _Wish(
+    options = _Options(
         policy,
         port_timeout,
         grace,
@@ -118,13 +118,13 @@ def command(
         as_lines,
     )
     if detached:
-        return _detach(application, file, wish)
+        return _detach(application, file, options)
     with name_server(application, server) as told:
-        return _run(application, file, wish, told)
+        return _run(application, file, options, told)
 
 
 @dataclass(frozen=True, slots=True)
-class _Wish:
+class _Options:
     """The options, as the command line gives them."""
 
     policy: str
@@ -155,25 +155,25 @@ class _Wish:
         ]
 
 
-def _detach(application: Application, file: Path, wish: _Wish) -> int:
+def _detach(application: Application, file: Path, options: _Options) -> int:
     from yarpy.cli.browser import open_page
     from yarpy.kits.launch.console import control
     from yarpy.kits.launch.console.detach import detach
 
     name = application.name
-    path = detach(name, [str(file), *wish.words()])
+    path = detach(name, [str(file), *options.words()])
     print_line(f"{name} runs in the background: `yarpy status {name}`, `yarpy down {name}`")
     print_line(
         f"what it says is in {path}, and what its programs print in `yarpy logs --of {name}`"
     )
-    if wish.page:
+    if options.page:
         url = control.ask(name, do="page")["url"]
         print_line(f"{name} is shown at {url}")
         open_page(url)
     return 0
 
 
-def _run(application: Application, file: Path, wish: _Wish, told: str) -> int:
+def _run(application: Application, file: Path, options: _Options, told: str) -> int:
     from yarpy.kits.launch.application.load import load
     from yarpy.kits.launch.console.control import Control, Record
     from yarpy.kits.launch.console.service import answer
@@ -185,37 +185,37 @@ def _run(application: Application, file: Path, wish: _Wish, told: str) -> int:
     from yarpy.kits.launch.supervise.supervisor import Supervisor
     from yarpy.kits.launch.supervise.watch import Watch
 
-    live = sys.stdout.isatty() and not wish.as_lines
-    stream = LogStream(application) if wish.log else None
+    live = sys.stdout.isatty() and not options.as_lines
+    stream = LogStream(application) if options.log else None
     printer = _Printer(live, stream)
 
     remote, servers = ExitStack(), list[RemoteRunner]()
 
     @functools.cache
     def runners(node: str) -> RemoteRunner:
-        runner = RemoteRunner(node, application.name, grace=wish.grace, replace=wish.replace)
+        runner = RemoteRunner(node, application.name, grace=options.grace, replace=options.replace)
         servers.append(runner)
         return remote.enter_context(runner)
 
     supervisor = Supervisor(
         application,
         runners=runners,
-        usual=wish.policy,
-        port_timeout=wish.port_timeout,
-        grace=wish.grace,
+        usual=options.policy,
+        port_timeout=options.port_timeout,
+        grace=options.grace,
         news=printer.news,
         said=printer.line,
     )
     record = Record(application.name)
     found = record.left()
-    if found and not wish.replace:
+    if found and not options.replace:
         record.leave()
         complain(
             "programs of an earlier `yarpy up`, which was killed, are still there: "
             f"{named(found)}; `yarpy down {application.name}` ends them, and so does --replace"
         )
         return 1
-    end_all(found, wish.grace)
+    end_all(found, options.grace)
 
     def note() -> None:
         units = supervisor.units
@@ -228,7 +228,7 @@ def _run(application: Application, file: Path, wish: _Wish, told: str) -> int:
         return {"url": serving.url()} if asked.get("do") == "page" else answer(supervisor, asked)
 
     control = Control(application.name, told_of)
-    watch = Watch(supervisor, lambda: load(file), printer.news, note) if wish.watch else None
+    watch = Watch(supervisor, lambda: load(file), printer.news, note) if options.watch else None
     left: list[str] = []
     all_over = False
     why = ""
@@ -236,16 +236,16 @@ def _run(application: Application, file: Path, wish: _Wish, told: str) -> int:
         printer.news("", told)
     try:
         try:
-            if wish.page:
+            if options.page:
                 _show(serving.url(), printer)
-            if wish.idle:
+            if options.idle:
                 supervisor.rest()
             else:
                 why = supervisor.start()
             if watch is not None:
                 watch.start()
             if not why:
-                _follow(supervisor, printer, live, wish.stop_on_failure)
+                _follow(supervisor, printer, live, options.stop_on_failure)
         except Interrupted:
             pass
         finally:  # whatever has gone wrong

@@ -31,8 +31,8 @@ from yarpy.platform import waiting
 from yarpy.platform.shell import quoted, setting
 
 if TYPE_CHECKING:
-    from yarpy.kits.sim.guest import Guest
     from yarpy.kits.sim.robot import Robot
+    from yarpy.kits.sim.robot_publisher import RobotPublisher
 
 TRY: Final = """
 {robot} is a simulated robot: a head, two cameras, an inertial unit.
@@ -86,11 +86,11 @@ def command(seconds: float | None, no_browser: bool, lan: bool) -> int:
         with (
             _name_server() as server,
             Robot(NAME, icub_head(), names=server.client) as robot,
-            ExitStack() as guests,
+            ExitStack() as shown,
             _page(server) as page,
         ):
             Panel(page, robot.name, server.client)
-            elsewhere = "".join(_shown(robot, lan, guests))
+            elsewhere = "".join(_shown(robot, lan, shown))
             print_line(_advice(server, robot, page, elsewhere))
             if not no_browser:
                 open_page(url_of(page.address))
@@ -124,16 +124,16 @@ def _page(server: yarpy.NameServer) -> yarpy.Port:
     raise AssertionError("unreachable")
 
 
-def _shown(robot: Robot, everywhere: bool, guests: ExitStack) -> Iterator[str]:
+def _shown(robot: Robot, everywhere: bool, shown: ExitStack) -> Iterator[str]:
     """Show the robot in every other graph that is there, and yield what to try in it."""
     from yarpy import registry
 
     for system in registry.robots.names():
-        guest: Guest = registry.robots.load(system)()
-        where = guest.find(everywhere)
+        publisher: RobotPublisher = registry.robots.load(system)()
+        where = publisher.find(everywhere)
         if where:
-            guests.enter_context(guest.show(robot, where))
-            yield guest.advice(robot.name, where)
+            shown.enter_context(publisher.show(robot, where))
+            yield publisher.advice(robot.name, where)
 
 
 def _advice(server: yarpy.NameServer, robot: Robot, page: yarpy.Port, elsewhere: str) -> str:

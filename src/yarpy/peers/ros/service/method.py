@@ -35,7 +35,7 @@ _MESSAGES: Final = {"Image": "sensor_msgs/Image", "PointCloud": "sensor_msgs/Poi
 _FAILURE: Final = re.compile(r"(?:[^:\n]*: )??([A-Z][A-Za-z0-9_]*): (.*)", re.DOTALL)
 
 
-class Made:
+class HintSource:
     """A source of the services that were made of hints."""
 
     def __init__(self) -> None:
@@ -59,7 +59,7 @@ class Types:
     ) -> None:
         self.field = re.compile(field)
         self._library, self._sources = library, sources
-        self._made: Made | None = None
+        self._made: HintSource | None = None
 
     def message(self, name: str) -> Any:
         """The class of a message. Raises UnknownType."""
@@ -72,7 +72,7 @@ class Types:
     def add(self, name: str, text: str) -> None:
         """Make a service known, by its text."""
         if self._made is None:
-            self._made = Made()
+            self._made = HintSource()
             self._sources(self._library()).append(self._made)
         self._made.texts[name] = text
 

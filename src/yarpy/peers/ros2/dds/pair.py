@@ -45,7 +45,7 @@ _CLIENT = re.compile(rb"clientid=([0-9a-fA-F.]+);")
 _numbers = itertools.count(1)
 
 
-class Came(NamedTuple):
+class ServiceSample(NamedTuple):
     """A question or answer: whose, which, and its bytes, as those of a message; `writer`: the
     library's handle of who wrote it, here."""
 
@@ -70,13 +70,13 @@ def joined(who: int, number: int, body: bytes) -> bytes:
     return body[:_ENCAPSULATION] + _HEADER.pack(who, number) + body[_ENCAPSULATION:]
 
 
-def parted(body: bytes, time: int, writer: int = 0) -> Came | None:
+def parted(body: bytes, time: int, writer: int = 0) -> ServiceSample | None:
     """Return what came; None for what is no question or answer."""
     if len(body) < _ENCAPSULATION + _HEADER.size or body[:2] != b"\0\1":
         return None
     who, number = _HEADER.unpack_from(body, _ENCAPSULATION)
     content = body[:_ENCAPSULATION] + body[_ENCAPSULATION + _HEADER.size :]
-    return Came(who, number, content, time, writer)
+    return ServiceSample(who, number, content, time, writer)
 
 
 def type_of(part: Participant, name: str, said: str) -> Any:
@@ -98,7 +98,7 @@ def type_of(part: Participant, name: str, said: str) -> Any:
 
 
 class Pair:
-    """Both halves for `kind`, a service; `take(what came)` is called in a thread of DDS, `changed`
+    """Both halves for `kind`, a service; `take(sample)` is called in a thread of DDS, `changed`
     when somebody comes or goes."""
 
     def __init__(
@@ -109,7 +109,7 @@ class Pair:
         kind: Any,
         qos: Qos,
         serves: bool,
-        hear: Callable[[Came], None],
+        hear: Callable[[ServiceSample], None],
         changed: Callable[[], None] = lambda: None,
     ) -> None:
         from cyclonedds import pub, sub, topic
@@ -146,16 +146,16 @@ class Pair:
         sample.body = joined(who, number, body)
         self.writer.write(sample)
 
-    def answer(self, came: Came, body: bytes) -> None:
+    def answer(self, sample: ServiceSample, body: bytes) -> None:
         """Send the answer to a question, once its asker can hear it."""
-        if came.writer not in self._met:
+        if sample.writer not in self._met:
             end = monotonic() + MEETING
-            while not self._is_met(came.writer) and monotonic() < end:
+            while not self._is_met(sample.writer) and monotonic() < end:
                 sleep(LOOK)
             if len(self._met) >= MOST_MET:
                 self._met.clear()
-            self._met.add(came.writer)
-        self.write(came.who, came.number, body)
+            self._met.add(sample.writer)
+        self.write(sample.who, sample.number, body)
 
     def _is_met(self, writer: int) -> bool:
         """Return whether we know the reader of a client; True if the client has gone."""
@@ -180,9 +180,9 @@ class Pair:
         for sample in self.reader.take(N=ROOM):
             body, info = getattr(sample, "body", None), sample.sample_info
             time = int(info.source_timestamp)
-            came = None if body is None else parted(body, time, info.publication_handle)
-            if came is not None:
-                found.append(came)
+            sample = None if body is None else parted(body, time, info.publication_handle)
+            if sample is not None:
+                found.append(sample)
         if not found and not news:
             return None
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 from yarpy.peers.ros2.dds.library import load
 from yarpy.peers.ros2.dds.participant import POOL
 from yarpy.peers.ros2.dds.service import DdsAnswerer, DdsCaller
-from yarpy.peers.ros2.dds.topic import DdsHearer, DdsWriter
+from yarpy.peers.ros2.dds.topic import DdsReader, DdsWriter
 from yarpy.peers.ros2.name import Node
 from yarpy.peers.ros2.rmw import Rmw
 
@@ -13,7 +13,7 @@ from yarpy.peers.ros2.rmw import Rmw
 class DdsRmw(Rmw):
     """DDS for a node. Raises UnknownPlugin if the extra is not installed."""
 
-    writers, hearers, answerers, callers = DdsWriter, DdsHearer, DdsAnswerer, DdsCaller
+    writers, readers, answerers, callers = DdsWriter, DdsReader, DdsAnswerer, DdsCaller
 
     def __init__(self, node: Node, domain: int) -> None:
         load()

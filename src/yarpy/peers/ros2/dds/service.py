@@ -19,7 +19,7 @@ from yarpy.errors import DecodeError, LinkClosed, UnknownName, YarpError
 from yarpy.limit import ROS2_QUESTIONS
 from yarpy.log import logger
 from yarpy.peers.ros2.carrier import GONE, Incoming, Outgoing
-from yarpy.peers.ros2.dds.pair import Came, Pair, type_of
+from yarpy.peers.ros2.dds.pair import Pair, ServiceSample, type_of
 from yarpy.peers.ros2.dds.participant import POOL
 from yarpy.peers.ros2.exchange import Question, Worker, answer_with, result_of
 from yarpy.peers.ros2.name import Node
@@ -53,11 +53,11 @@ class DdsServer(Inbox):
         """Return its type, which is always known."""
         return self.kind
 
-    def _heard(self, came: Came) -> None:
+    def _heard(self, sample: ServiceSample) -> None:
         if self.waiting >= ROS2_QUESTIONS:
             self.dropped += 1
             return
-        self.put(Incoming(came.body, came.number, came.time, came), ROS2_QUESTIONS)
+        self.put(Incoming(sample.body, sample.number, sample.time, sample), ROS2_QUESTIONS)
 
     def give(self, item: Outgoing) -> None:
         pair = self._pair
@@ -199,14 +199,14 @@ class DdsCaller:
         self.wait(TIMEOUT if timeout is None else min(timeout, TIMEOUT))
         return result_of(self.ask(request), timeout, self.name)
 
-    def _heard(self, came: Came) -> None:
+    def _heard(self, sample: ServiceSample) -> None:
         assert self._pair is not None
-        if came.who != self._pair.who:
+        if sample.who != self._pair.who:
             return  # of somebody else's question
         with self._lock:
-            found = self._asked.pop(came.number, None)
+            found = self._asked.pop(sample.number, None)
         if found is not None:
-            found.set_result(came.body)
+            found.set_result(sample.body)
 
     def _look(self) -> None:
         """Somebody has come or gone."""

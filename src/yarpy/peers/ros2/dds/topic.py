@@ -62,7 +62,7 @@ class DdsWriter(DdsPublisher):
             super().close()
 
 
-class DdsHearer(DdsSubscriber):
+class DdsReader(DdsSubscriber):
     """Calls `callback` with each message, in a thread of its own."""
 
     def __init__(

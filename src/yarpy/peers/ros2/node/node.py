@@ -46,7 +46,7 @@ from yarpy.peers.ros2.parameter.client import RemoteParameters
 from yarpy.peers.ros2.parameter.server import EVENT, EVENTS, QOS, SERVICES, Asked, event
 from yarpy.peers.ros2.parameter.store import Change, Parameters
 from yarpy.peers.ros2.qos import Qos, profile
-from yarpy.peers.ros2.rmw import Answerer, Caller, Hearer, Rmw, Writer
+from yarpy.peers.ros2.rmw import Answerer, Caller, Reader, Rmw, Writer
 
 log = logger("yarpy.ros2")
 
@@ -158,7 +158,7 @@ class Node:
         qos: str | Qos | None = None,
         on_event: Callable[[Event], object] | None = None,
         content_filter_options: None = None,
-    ) -> Hearer:
+    ) -> Reader:
         """Call `callback` with each message, in the node's order. `qos`, `on_event`: as those of a
         publisher. Raises AddressError, UnknownType; LocalProtocolError for a filter, which there is
         none of."""
@@ -170,7 +170,7 @@ class Node:
             )
         worker = self._keep(Worker(f"yarpy topic {topic}"))
         whole = self.resolve(topic)
-        made = self._used(self._rmw.hearer(whole, type_, callback, worker, _qos(qos)))
+        made = self._used(self._rmw.reader(whole, type_, callback, worker, _qos(qos)))
         made.events.hear = on_event
         return made
 
@@ -263,7 +263,7 @@ class Node:
         }
         for what, (kind, callback, qos) in heard.items():
             topic = place(whole, what)
-            self._used(self._rmw.hearer(topic, kind, callback, worker, qos))
+            self._used(self._rmw.reader(topic, kind, callback, worker, qos))
         return client
 
     # -- the end ----------------------------------------------------------------------------------
@@ -313,7 +313,7 @@ class Node:
         if SIMULATED in changes:
             self._time.follow(changes[SIMULATED] is True)
 
-    def _hear_clock(self, heard: Callable[[Any], object]) -> Hearer:
+    def _hear_clock(self, heard: Callable[[Any], object]) -> Reader:
         return self.subscriber(CLOCK, "rosgraph_msgs/msg/Clock", heard, qos=CLOCK_QOS)
 
     def _check(self) -> None:

@@ -57,7 +57,7 @@ class Writer(Publisher):
                 raise
 
 
-class Hearer(Subscriber):
+class Reader(Subscriber):
     """Calls `callback` with each message, in the thread of a worker."""
 
     waits = False

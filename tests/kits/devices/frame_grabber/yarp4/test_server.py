@@ -16,7 +16,7 @@ from yarpy.kits.devices.access import Access
 from yarpy.kits.devices.frame_grabber.responder import FrameGrabberResponder
 from yarpy.kits.devices.frame_grabber.yarp4.functions import FrameGrabberMsgs
 from yarpy.kits.devices.frame_grabber.yarp4.server import Functions, blank
-from yarpy.kits.devices.refusal import Complaints
+from yarpy.kits.devices.refusal import DeviceErrorLog
 from yarpy.kits.thrift.structure import default_of
 from yarpy.wire.message import CALL, Message
 
@@ -42,7 +42,7 @@ class Eye:
 
 
 def served(device: object) -> Functions:
-    access = Access(device, 0, Complaints("/eye"), threading.Lock())
+    access = Access(device, 0, DeviceErrorLog("/eye"), threading.Lock())
     responder = FrameGrabberResponder(
         access, lambda: Image(np.full((6, 8, 3), 77, "uint8")), "/eye"
     )

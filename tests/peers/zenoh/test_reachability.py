@@ -11,9 +11,9 @@ import pytest
 
 import yarpy
 from yarpy.contact import Contact
-from yarpy.peers.zenoh import ways as direct
+from yarpy.peers.zenoh import reachability as direct
 from yarpy.peers.zenoh.key import Entry
-from yarpy.peers.zenoh.ways import Ways, candidates, machine, reachable
+from yarpy.peers.zenoh.reachability import Reachability, candidates, machine, reachable
 
 FAR = Entry(Contact("tcp", "/far", "127.0.0.1", 1), "ab", 1, "0123", 1, ("198.51.100.7",))
 
@@ -73,7 +73,7 @@ def test_own_and_local_addresses_lead_elsewhere(monkeypatch: pytest.MonkeyPatch)
 
 def test_this_computer_s_ports_are_where_they_say() -> None:
     entry = replace(FAR, machine=machine())
-    assert Ways().to(entry) == entry.contact
+    assert Reachability().to(entry) == entry.contact
 
 
 def test_what_was_found_is_remembered(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -84,12 +84,12 @@ def test_what_was_found_is_remembered(monkeypatch: pytest.MonkeyPatch) -> None:
         return hosts[0]
 
     monkeypatch.setattr(direct, "reachable", look)
-    ways = Ways()
-    assert ways.to(FAR).host == ways.to(FAR).host == "198.51.100.7"
+    found = Reachability()
+    assert found.to(FAR).host == found.to(FAR).host == "198.51.100.7"
     assert asked == ["/far"]
-    assert ways.to(replace(FAR, zid="cd")).host == "198.51.100.7" and len(asked) == 2
+    assert found.to(replace(FAR, zid="cd")).host == "198.51.100.7" and len(asked) == 2
 
 
 def test_what_is_no_port_of_yarp_is_not_dialled() -> None:
     camera = replace(FAR, contact=Contact("mjpeg", "/webcam", "198.51.100.9", 80))
-    assert Ways().to(camera) == camera.contact
+    assert Reachability().to(camera) == camera.contact

@@ -1,4 +1,4 @@
-"""The book of a server: which programs it has started, in files that outlive it.
+"""The state of a server: which programs it has started, in files that outlive it.
 
     ~/.local/state/yarpy/run/%2FnodeA/     one folder for each server
         lock                               held by the server that runs
@@ -31,7 +31,7 @@ _LONGEST: Final = 1 << 20  # bytes of an entry
 @dataclass(frozen=True, slots=True)
 class Entry:
     """A program that was started. `port`: its log goes there; `uuid`: names its stdin and stdout,
-    "" if there are none; `began`: as of `family`."""
+    "" if there are none; `began`: as of `process_tree`."""
 
     id: str
     tag: str
@@ -46,7 +46,7 @@ class Entry:
     boot: str = ""
 
 
-class Book:
+class StateFolder:
     """The folder of one server, which holds the lock of it. Raises AddressError if another one
     does, or the folder cannot be used."""
 

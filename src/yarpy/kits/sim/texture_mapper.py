@@ -1,4 +1,4 @@
-"""Brush: paints the textures of flat surfaces into a frame, in the way that is fast with numpy.
+"""TextureMapper: paints the textures of flat surfaces into a frame, as fast as numpy can.
 
 Rules: each surface is given as rows from `left` to `right` (`lens.Spans`) and a matrix from pixels
 to texels. Large surfaces are painted one by one, a whole rectangle of pixels per operation; small
@@ -19,7 +19,7 @@ if TYPE_CHECKING:
     Array: TypeAlias = NDArray[Any]
 
 
-class Brush:
+class TextureMapper:
     """Paints surfaces with these textures (rows, columns of uint32) into frames (height, width)."""
 
     def __init__(self, textures: Sequence[Array], width: int, height: int) -> None:

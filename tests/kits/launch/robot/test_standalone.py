@@ -4,7 +4,7 @@ import pytest
 
 import yarpy
 from yarpy.kits.devices.wrapper import server_of
-from yarpy.kits.launch.robot.alone import Alone, types
+from yarpy.kits.launch.robot.standalone import StandaloneDevice, types
 from yarpy.registry import devices
 
 
@@ -32,8 +32,10 @@ class Fixture:
             return lambda options, *, names=None: Arm(self.log, options)
         return devices.load(kind)
 
-    def open(self, **options: object) -> Alone:
-        return Alone(yarpy.Property(**options), self.plugins, server_of, names=self.names)
+    def open(self, **options: object) -> StandaloneDevice:
+        return StandaloneDevice(
+            yarpy.Property(**options), self.plugins, server_of, names=self.names
+        )
 
 
 def test_a_device_gets_the_server_of_its_kind() -> None:

@@ -21,7 +21,7 @@ from yarpy.port.keep.log_line import LogLine
 from yarpy.wire.message import Message
 
 
-class Kept(Protocol):
+class LogFile(Protocol):
     """A file that keeps lines."""
 
     def add(self, line: LogLine, message: Message) -> None:
@@ -34,7 +34,7 @@ class Kept(Protocol):
         """Add no more."""
 
 
-def open_kept(path: str | Path) -> Kept:
+def open_log_file(path: str | Path) -> LogFile:
     """Return a new file for lines. Raises FileExistsError, OSError, LocalProtocolError for an
     ending that nobody knows, UnknownPlugin if the library `mcap` is missing."""
     path = Path(path)

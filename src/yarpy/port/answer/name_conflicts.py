@@ -1,4 +1,4 @@
-"""Rivals: two programs of the same name that send to one port, as from two name services.
+"""Name conflicts: two programs of the same name that send to one port, as from two name services.
 
 Rules: a sender whose connection broke dials again, and takes the place of what is left of it: that
 is how a connection comes back before anybody has noticed its end. But what it replaces twice within
@@ -21,7 +21,7 @@ LONG: Final = 90.0  # seconds; more than the longest pause between two attempts 
 MOST: Final = 200  # names
 
 
-class Rivals:
+class NameConflicts:
     """Of the port called `name`. Any thread may call."""
 
     def __init__(self, name: Callable[[], str]) -> None:

@@ -1,4 +1,4 @@
-"""Intake: takes the lines of all programs that log, whenever they come, and counts what it loses.
+"""LogCollector: takes the lines of all programs that log, and counts what it loses.
 
 Rules: every second it looks for ports that log and asks them to send here; a program that came back
 is asked again. Lines wait in memory, a limited number of them, for whoever reads them; what comes
@@ -43,7 +43,7 @@ class _Origin:
     older: set[int] = field(default_factory=set)
 
 
-class Intake:
+class LogCollector:
     """Takes lines of the ports that match `pattern`, at the port that `open_` opens with the
     callback that it is handed."""
 

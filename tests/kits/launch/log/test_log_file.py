@@ -8,7 +8,7 @@ import pytest
 import yarpy
 from yarpy import record
 from yarpy.errors import LocalProtocolError
-from yarpy.kits.launch.log.kept import open_kept
+from yarpy.kits.launch.log.log_file import open_log_file
 from yarpy.port.keep.log_line import LogLine, read_message
 from yarpy.wire.message import Message
 
@@ -19,14 +19,14 @@ def kept(path: Path) -> LogLine:
     message = Message("D", VALUE.to_bytes())
     line = read_message(message)
     assert line is not None
-    file = open_kept(path)
+    file = open_log_file(path)
     file.add(line, message)
     file.flush()
     before = path.stat().st_size
     file.close()
     assert before
     with pytest.raises(FileExistsError):
-        open_kept(path)
+        open_log_file(path)
     return line
 
 
@@ -53,4 +53,4 @@ def test_mcap(tmp_path: Path) -> None:
 
 def test_an_ending_that_nobody_knows(tmp_path: Path) -> None:
     with pytest.raises(LocalProtocolError, match=r"end it with \.log"):
-        open_kept(tmp_path / "x.xls")
+        open_log_file(tmp_path / "x.xls")

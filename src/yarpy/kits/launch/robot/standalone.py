@@ -1,6 +1,6 @@
 """One device without a robot's file, with the server that brings it to the network: yarpdev.
 
-    with Alone(options, devices.load, server_of) as one:
+    with StandaloneDevice(options, devices.load, server_of) as one:
         one.name                                    "/grabber"
 
 Rules: `device` is its type. With `subdevice` that one is a server, and serves the subdevice (from
@@ -24,7 +24,7 @@ _BUNDLE: Final = "deviceBundler"
 _NAMES: Final = {"frameGrabber_nws_yarp": "/grabber"}
 
 
-class Alone:
+class StandaloneDevice:
     """A device that is open until it is closed.
 
     options: its parameters. plugins: returns what opens devices of a type. server_of: returns the

@@ -8,8 +8,8 @@ import pytest
 from support.wait import HANG, wait_until
 
 import yarpy
-from yarpy.port.answer import rivals
-from yarpy.port.answer.rivals import LONG, MOST, SOON, Rivals
+from yarpy.port.answer import name_conflicts
+from yarpy.port.answer.name_conflicts import LONG, MOST, SOON, NameConflicts
 
 
 class Clock:
@@ -17,13 +17,13 @@ class Clock:
 
     def __init__(self, monkeypatch: pytest.MonkeyPatch) -> None:
         self.now = 1000.0
-        monkeypatch.setattr(rivals.time, "monotonic", lambda: self.now)
+        monkeypatch.setattr(name_conflicts.time, "monotonic", lambda: self.now)
 
 
 def test_who_replaces_one_that_lives_twice_is_somebody_else(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
-    clock, found = Clock(monkeypatch), Rivals(lambda: "/in")
+    clock, found = Clock(monkeypatch), NameConflicts(lambda: "/in")
     assert not found.refusal("/out")
     found.replaced("/out")
     assert not found.refusal("/out"), "its connection broke, and nobody has noticed"
@@ -42,7 +42,7 @@ def test_who_replaces_one_that_lives_twice_is_somebody_else(
 
 
 def test_names_without_end_are_not_kept() -> None:
-    found = Rivals(lambda: "/in")
+    found = NameConflicts(lambda: "/in")
     for number in range(3 * MOST):
         found.replaced(f"/out/{number}")
         found.replaced(f"/out/{number}")
@@ -54,7 +54,7 @@ def test_one_stays_and_the_other_is_told(
     carrier: str, caplog: pytest.LogCaptureFixture, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """With a name server each, as beside YARP's own and a ROS master."""
-    monkeypatch.setattr(rivals, "SOON", HANG)  # however long each takes on this machine
+    monkeypatch.setattr(name_conflicts, "SOON", HANG)  # however long each takes on this machine
     events: list[yarpy.ConnectionEvent] = []
     caplog.set_level(logging.INFO)
     with (
@@ -91,9 +91,9 @@ def test_a_sender_may_close_its_connection_and_make_another_where_two_had_one_na
         yarpy.Port("/in", names=yarpy.LocalNames(), callback=lambda message: None) as in_,
         yarpy.Port("/out", names=yarpy.LocalNames()) as out,
     ):
-        in_._hub.inputs._rivals.replaced("/out")
-        in_._hub.inputs._rivals.replaced("/out")
-        assert "another program" in in_._hub.inputs._rivals.refusal("/out")
+        in_._hub.inputs._conflicts.replaced("/out")
+        in_._hub.inputs._conflicts.replaced("/out")
+        assert "another program" in in_._hub.inputs._conflicts.refusal("/out")
         target = f"/{in_.address}"
         for _ in range(30):  # each takes the place of the one before it
             out.connect(target)

@@ -1,4 +1,4 @@
-"""Ways to a port of another computer: dialled directly, or only over the routers of Zenoh.
+"""Reachability of a port of another computer: dialled directly, or only over the routers of Zenoh.
 
 Rules: what is tried is what will be used: a TCP connection to one of the addresses that the port
 tells, and who answers there is asked for its name, since two networks may use the same addresses.
@@ -51,7 +51,7 @@ def machine() -> str:
     return hashlib.sha256(" ".join(parts).encode()).hexdigest()[:16]
 
 
-class Ways:
+class Reachability:
     """The hosts at which programs are reached, as far as they are known."""
 
     def __init__(self) -> None:

@@ -1,6 +1,6 @@
-"""Guests: graphs of other systems in which a simulated robot is shown, beside its ports of YARP.
+"""RobotPublisher: shows a simulated robot in the graph of another system, beside its ports of YARP.
 
-Rules: a contract alone. Guests are found by name (registry kind `robots`), each a class without
+Rules: a contract alone. Publishers are found by name (registry kind `robots`), each a class without
 parameters.
 """
 
@@ -12,7 +12,7 @@ from typing import Protocol
 from yarpy.kits.sim.robot import Robot
 
 
-class Guest(Protocol):
+class RobotPublisher(Protocol):
     """One other system."""
 
     title: str

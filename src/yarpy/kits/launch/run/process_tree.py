@@ -19,7 +19,7 @@ MARK: Final = process.MARK
 
 
 @dataclass(frozen=True, slots=True)
-class Family:
+class ProcessTree:
     """The processes of one program. `began`: when the first did, 0 if that is not known."""
 
     pid: int

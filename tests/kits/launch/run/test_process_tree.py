@@ -8,8 +8,8 @@ import sys
 import pytest
 from support.wait import wait_until
 
-from yarpy.kits.launch.run import family
-from yarpy.kits.launch.run.family import Family
+from yarpy.kits.launch.run import process_tree
+from yarpy.kits.launch.run.process_tree import ProcessTree
 from yarpy.kits.launch.supervise import process
 
 pytestmark = pytest.mark.skipif(not process.known(), reason="this system has no /proc to look at")
@@ -34,18 +34,18 @@ def test_who_left_the_session_is_found_and_ended(first: str) -> None:
     mark = f"test-{first}-{os.getpid()}"
     with subprocess.Popen(
         [sys.executable, "-c", LEAVES, first],
-        env={family.MARK: mark},
+        env={process_tree.MARK: mark},
         stdout=subprocess.PIPE,
         start_new_session=True,
     ) as child:
         assert child.stdout is not None
         assert child.stdout.readline() == b"ready\n"
-        found = Family(child.pid, mark, family.began(child.pid))
+        found = ProcessTree(child.pid, mark, process_tree.began(child.pid))
         if first == "go":
             child.wait()
             assert not found.leads
         assert len(found.members()) == (2 if first == "stay" else 1)
-        assert (family.leader(mark) == child.pid) == (first == "stay")
+        assert (process_tree.leader(mark) == child.pid) == (first == "stay")
         assert found.signal(signal.SIGKILL)
         child.wait()
         wait_until(lambda: not found.members())
@@ -54,9 +54,9 @@ def test_who_left_the_session_is_found_and_ended(first: str) -> None:
 
 def test_a_number_that_was_given_to_another_one_is_not_it() -> None:
     with subprocess.Popen(["sleep", "600"], start_new_session=True) as child:
-        now = family.began(child.pid)
-        assert Family(child.pid, "m", now).leads
-        other = Family(child.pid, "m", now - 1)
+        now = process_tree.began(child.pid)
+        assert ProcessTree(child.pid, "m", now).leads
+        other = ProcessTree(child.pid, "m", now - 1)
         assert not other.leads and other.members() == [] and not other.signal(signal.SIGKILL)
         assert child.poll() is None
         child.kill()
