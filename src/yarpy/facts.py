@@ -24,7 +24,8 @@ class Reach:
     a socket, which besides has no name; a topic of a broker, at the host of that; a topic without
     any address. `number`, `number_tls`: the TCP port number of brokers that say none. `cpp`: what
     happens to such a connection with a port of C++ YARP, if it is of no use. `tells`: the initiator
-    gives its name and modifiers. `same_program`: both ends are in one program, or of yarpy.
+    gives its name and modifiers. `same_program`: both ends are in one program, or of yarpy. `page`:
+    a web page may be the initiator.
     """
 
     what: str = "port"
@@ -33,6 +34,7 @@ class Reach:
     cpp: str = ""
     tells: bool = True
     same_program: bool = False
+    page: bool = False
 
     @property
     def foreign(self) -> bool:

@@ -40,7 +40,7 @@ _HEADER: Final = b"\0\0\0\xff\0\0\0\xff"
 _METHODS: Final = (b"GET /", b"POST /", b"HEAD /", b"OPTIONS ", b"PUT /", b"DELETE /", b"PATCH /")
 _SILENT: Final = Reach(tells=False)
 _WEB_SERVER: Final = Reach(
-    "server", cpp="which exchanges nothing with other ports over http: use tcp"
+    "server", cpp="which exchanges nothing with other ports over http: use tcp", page=True
 )
 
 
@@ -118,8 +118,18 @@ CARRIERS: Final[Mapping[str, CarrierRow]] = _table(
         magic=(b"\0", b"\x80\x01\0", b"\x82"),
         reaches=SOCKET,
     ),
-    CarrierRow("websocket", f"{_WEB}.websocket:WebSocket", magic=(b"GET /?ws",), reaches=_SILENT),
-    CarrierRow("xmlrpc", f"{_WEB}.xmlrpc:XmlRpc", magic=(b"POST /RP", b"POST / H"), reaches=SERVER),
+    CarrierRow(
+        "websocket",
+        f"{_WEB}.websocket:WebSocket",
+        magic=(b"GET /?ws",),
+        reaches=Reach(tells=False, page=True),
+    ),
+    CarrierRow(
+        "xmlrpc",
+        f"{_WEB}.xmlrpc:XmlRpc",
+        magic=(b"POST /RP", b"POST / H"),
+        reaches=Reach("server", page=True),
+    ),
     CarrierRow("zmq", f"{_PEERS}.zmq.carrier:Zmq", magic=(b"\xff" + bytes(7),), reaches=SOCKET),
 )
 

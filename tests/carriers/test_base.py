@@ -48,6 +48,11 @@ class TestIndexed(CarrierConformance):
     carrier = Coded
 
 
+def test_the_contract_is_small() -> None:
+    """C++ has 45 virtual functions. What belongs together is one value: Delivery, Limits, Reach."""
+    assert len([name for name in vars(Carrier) if not name.startswith("_")]) <= 32
+
+
 def test_magic_may_be_shorter_than_eight_bytes() -> None:
     assert Facts.recognises(b"FACTS123") == 5
     assert Facts.recognises(b"FACT5123") == 0

@@ -5,6 +5,7 @@ from __future__ import annotations
 import subprocess
 import threading
 from collections.abc import Iterator
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -127,7 +128,8 @@ def test_a_silent_port_stays_connected(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
     monkeypatch.setattr(mqtt_broker, "KEEP_ALIVE", 1)  # the broker hangs up after 1.5 s
-    monkeypatch.setattr(mqtt_broker.Client, "ping", (mqtt_broker.Client.ping[0], 0.4))
+    often = replace(mqtt_broker.Client.limits, ping_interval=0.4)
+    monkeypatch.setattr(mqtt_broker.Client, "limits", often)
     reader.connect(broker.topic("x", f"+sub{added}"))
     out.connect(broker.topic("x", added))
     links = (*out._hub.outputs.links, *reader._hub.inputs.links)

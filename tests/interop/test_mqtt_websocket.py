@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import socket
 from collections.abc import Iterator
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -166,7 +167,8 @@ def test_a_silent_port_stays_connected(
     broker: Broker, out: yarpy.Port, reader: yarpy.BufferedPort, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr(mqtt_broker, "KEEP_ALIVE", 1)  # the broker hangs up after 1.5 s
-    monkeypatch.setattr(mqtt_broker.Client, "ping", (mqtt_broker.Client.ping[0], 0.4))
+    often = replace(mqtt_broker.Client.limits, ping_interval=0.4)
+    monkeypatch.setattr(mqtt_broker.Client, "limits", often)
     reader.connect(broker.topic("x", "+sub+ws"))
     out.connect(broker.topic("x", "+ws"))
     links = (*out._hub.outputs.links, *reader._hub.inputs.links)

@@ -77,13 +77,16 @@ class Limits:
     idle_timeout: for an accepted peer that sends nothing. ack_timeout: for an acknowledgement;
     messages then go one at a time. ahead: messages that may be without one. message_timeout: for
     silence in the middle of a message; within twice that time 60 kB of it must arrive. (For a whole
-    message's time see the effect `Within`.)
+    message's time see the effect `Within`.) ping: what a peer that we have dialled wants to hear
+    every `ping_interval`; 0: never.
     """
 
     idle_timeout: float | None = None
     ack_timeout: float | None = None
     ahead: int = 256
     message_timeout: float | None = 30.0
+    ping: bytes = b""
+    ping_interval: float = 0.0
 
 
 class Carrier:
@@ -102,14 +105,11 @@ class Carrier:
     acks: bool = False  # the receiver confirms each message
     replies: ClassVar[bool] = True
     spelling: Spelling = "binary"  # what `encode` uses of a packet
-    pages: ClassVar[bool] = False  # web pages can speak it, too
     reaches: ClassVar[Reach] = PORT  # what is at the other end of one that we dial
     words: ClassVar[tuple[str, ...] | None] = None  # what may be added to its name; None: anything
     over: ClassVar[str] = ""  # the transport of its messages, if they leave where it has greeted
     # Of a WebSocket in whose frames it may come, too; it then writes by `stream.write` alone.
     subprotocol: ClassVar[str] = ""
-    # What a peer that we have dialled wants to hear, and how often, in seconds; 0: never.
-    ping: tuple[bytes, float] = (b"", 0.0)
     delivery: Delivery = Delivery()
     limits: Limits = Limits()  # what a peer says in its greeting may set those of one connection
 

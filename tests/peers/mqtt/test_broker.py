@@ -148,6 +148,7 @@ def test_an_answer_may_take_longer_than_a_message() -> None:
     _, asker, _ = asking()
     _, publisher = dialled("mqtt", "/mqtt://broker:1883/q")
     assert asker.limits.message_timeout is None
+    assert asker.limits.ping_interval, "it pings like any other client"
     assert publisher.limits.message_timeout  # an acknowledgement comes at once
 
 
@@ -239,12 +240,12 @@ def test_a_port_subscribes_in_version_5() -> None:
 
 def test_the_broker_may_wish_for_other_pings() -> None:
     end, carrier = dialled("mqtt+v5", "/mqtt://broker:1883/a")
-    assert carrier.ping == (b"\xc0\0", 30.0)
+    assert (carrier.limits.ping, carrier.limits.ping_interval) == (b"\xc0\0", 30.0)
     end.begin(carrier.greet(end.stream))
     assert end.take()[10:12] == b"\0\x3c"  # a minute
     end.feed(bytes.fromhex("2006000003 13000a"))
     assert end.done
-    assert carrier.ping[1] == 5.0
+    assert carrier.limits.ping_interval == 5.0
 
 
 @pytest.mark.parametrize("spec", ["mqtt", "mqtt+rpc"])

@@ -11,6 +11,7 @@ import pytest
 from support.wait import wait_until
 
 import yarpy
+from yarpy.carriers.base import Limits
 from yarpy.port.answer import ping
 
 
@@ -32,7 +33,7 @@ def test_each_connection_gets_one_in_its_time(clock: Any) -> None:
         clock.now = 1000.0
         pings.look(hubs)
         assert link.driver.bytes_out == before  # YARP wants none
-        link.carrier.ping = b"~\0\0\0\1~\0\0", 5.0
+        link.carrier.limits = Limits(ping=b"~\0\0\0\1~\0\0", ping_interval=5.0)
         try:
             for clock.now, sent in (
                 (1001.0, 0),
@@ -51,7 +52,7 @@ def test_each_connection_gets_one_in_its_time(clock: Any) -> None:
             pings.look(hubs)
             assert link.driver.bytes_out == before + 24
         finally:
-            link.carrier.ping = b"", 0.0
+            link.carrier.limits = Limits()
         out.disconnect("/in")
         wait_until(lambda: not inlet.inputs)
         pings.look(hubs)
@@ -73,7 +74,7 @@ def test_whoever_waits_for_an_answer_pings(clock: Any, monkeypatch: pytest.Monke
         ThreadPoolExecutor(1) as other,
     ):
         (link,), hubs = client._hub.outputs.links, [client._hub]
-        link.carrier.ping = b"~\0\0\0\1~\0\0", 5.0
+        link.carrier.limits = Limits(ping=b"~\0\0\0\1~\0\0", ping_interval=5.0)
         pings = ping.Pings()
         pings.look(hubs)
         answer_ = other.submit(client.call, 1)

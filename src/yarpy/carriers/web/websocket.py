@@ -62,9 +62,8 @@ class WebSocket(Carrier):
 
     name = "websocket"
     words = OVER_TCP
-    pages = True
     magic = b"GET /?ws"
-    reaches = Reach(tells=False)
+    reaches = Reach(tells=False, page=True)
     delivery = Delivery(backlog=8, coalesces=False)
 
     def __init__(self, route: Route) -> None:

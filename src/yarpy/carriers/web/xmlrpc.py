@@ -28,7 +28,7 @@ from yarpy.errors import (
     RemoteProtocolError,
     Timeout,
 )
-from yarpy.facts import MAGIC_SIZE, SERVER
+from yarpy.facts import MAGIC_SIZE, Reach
 from yarpy.limit import HTTP_BODY, HTTP_HEAD, HTTP_LINE
 from yarpy.registry import graphs
 from yarpy.route import Route
@@ -54,10 +54,9 @@ class XmlRpc(Carrier):
 
     name = "xmlrpc"
     words = ("path.PATH", *OVER_TCP)
-    pages = True
     magic = b"POST /RP"
     acks = True
-    reaches = SERVER
+    reaches = Reach("server", page=True)
     delivery = Delivery(coalesces=False)
     limits = Limits(ack_timeout=5.0)
 

@@ -268,7 +268,7 @@ def welcome(
         ends = _ends(transport)
         here = reached if way.proves else ""
         peer = peer_of(ends[0][0] if ends else "", here, transport.peer_names, bool(key))
-        known = replace(peer, page=kind.pages, ends=ends if way.proves else ())
+        known = replace(peer, page=kind.reaches.page, ends=ends if way.proves else ())
         driver.admission = gate.admit(known)
     added = f"+{WORD}" if secure else ""
     carrier = kind(Route("", target, kind.name + added, port, reached, declared=declared))

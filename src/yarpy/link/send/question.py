@@ -47,7 +47,7 @@ def exchange(
         counter.count(started)
         counted = True
         counter.bytes = driver.bytes_out
-        if carrier.ping[1]:
+        if carrier.limits.ping_interval:
             sender.listen(True)
         if stream.head == stream.tail:
             driver.fill(until)

@@ -69,7 +69,7 @@ _ENDS: Final = {
 class Client(MqttPeer):
     """A port that has dialled a broker."""
 
-    ping = (mqtt.packet(mqtt.PINGREQ), KEEP_ALIVE / 2)
+    limits = Limits(ping=mqtt.packet(mqtt.PINGREQ), ping_interval=KEEP_ALIVE / 2)
 
     def _enter(self, stream: ByteStream) -> Steps[ByteStream]:
         """Return the stream of what the broker says: that of the connection, or of what is in the
@@ -84,7 +84,8 @@ class Client(MqttPeer):
             path = f"/{path}"
         yield from ask_for_websocket(stream, self.route, path, self.subprotocol)
         inside = FrameStream(stream, masks=True)
-        self.ping = b"".join(frame(BINARY, True, self.ping[0])), self.ping[1]
+        ping = b"".join(frame(BINARY, True, self.limits.ping))
+        self.limits = replace(self.limits, ping=ping)
         yield Switch(None, inside)
         return inside
 
@@ -101,15 +102,16 @@ class Client(MqttPeer):
             kind = LoginRefused if reason in _LOGIN else RemoteProtocolError
             raise kind(f"the broker refuses: {why}")
         ahead = MOST_IN_FLIGHT if self.qos == 2 else self.limits.ahead
+        every = self.limits.ping_interval
         if self.version == mqtt.V5:
             wishes = said.properties()
             if (wish := wishes.get(mqtt.SERVER_KEEP_ALIVE)) is not None:
-                self.ping = self.ping[0], int.from_bytes(wish, "big") / 2
+                every = int.from_bytes(wish, "big") / 2
             if (most := wishes.get(mqtt.RECEIVE_MAXIMUM)) is not None:
                 ahead = min(ahead, max(1, int.from_bytes(most, "big")))
             self._agree(wishes)
             self.most = int.from_bytes(wishes.get(mqtt.MOST_BYTES, b""), "big")
-        self.limits = replace(self.limits, ahead=ahead)
+        self.limits = replace(self.limits, ahead=ahead, ping_interval=every)
         return bool(body[0] & 1)
 
     def _agree(self, wishes: dict[int, bytes]) -> None:
@@ -306,7 +308,8 @@ class Asker(Client):
     """A port that asks whoever has subscribed to a broker's topic (version 5)."""
 
     acks = False
-    limits = Limits(message_timeout=None)  # who answers may take as long as it likes
+    # Who answers may take as long as it likes.
+    limits = replace(Client.limits, message_timeout=None)
 
     def __init__(self, route: Route) -> None:
         super().__init__(route)

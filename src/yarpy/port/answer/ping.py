@@ -1,6 +1,6 @@
 """Ping: the signs of life that some protocols want of whoever has dialled, such as brokers.
 
-Rules: a ping goes out as often as its carrier says (`ping`), whatever else is said. It never
+Rules: a ping goes out as often as its carrier says (`limits`), whatever else is said. It never
 waits: where something is on its way there, or the peer takes nothing, it is left out until the next
 look. The protocol reads what is answered; who says nothing for SILENCE pings is taken for gone, and
 the connection ends with a log line: a program that is stopped, or a host that vanished, gives no
@@ -50,7 +50,7 @@ class Pings:
         for hub in hubs:
             links: tuple[Link, ...] = (*hub.inputs.links, *hub.outputs.links)
             for link in links:
-                every = link.carrier.ping[1]
+                every = link.carrier.limits.ping_interval
                 if not every:
                     continue
                 turn = before.get(link) or _Turn(now + every, link.driver.bytes_in)
@@ -90,10 +90,10 @@ def _end(link: Link, why: str) -> None:
 def _ping(link: Link) -> bool:
     """Send a ping, if that takes no waiting."""
     if isinstance(link, Outbound):
-        return link.sender.interject(link.carrier.ping[0])
+        return link.sender.interject(link.carrier.limits.ping)
     driver = link.driver
     if driver.stream.pending:
         return False  # acknowledgements are on their way: no bytes may come between theirs
     with contextlib.suppress(OSError):  # its thread meets the same end
-        driver.transport.try_send([link.carrier.ping[0]])
+        driver.transport.try_send([link.carrier.limits.ping])
     return True

@@ -57,12 +57,13 @@ class Http(Carrier):
 
     name = "http"
     words = ("path.PATH", *OVER_TCP)
-    pages = True
     magic = b"GET /"
     spelling = "text"
     acks = True
     # To C++ YARP, http is for browsers: such a connection is made, and carries nothing.
-    reaches = Reach("server", cpp="which exchanges nothing with other ports over http: use tcp")
+    reaches = Reach(
+        "server", cpp="which exchanges nothing with other ports over http: use tcp", page=True
+    )
     delivery = Delivery(coalesces=False)
     limits = Limits(idle_timeout=TIME)
 
