@@ -17,6 +17,7 @@ from support.vectors import binaries, rows
 
 from yarpy.data import codec
 from yarpy.data.bottle import Bottle, Property
+from yarpy.data.sig.cloud_head import HEAD, POINTS
 from yarpy.data.sig.image import Image
 from yarpy.data.sig.matrix import Matrix
 from yarpy.data.sig.sound import Sound
@@ -24,6 +25,7 @@ from yarpy.data.sig.vector import Vector
 from yarpy.data.stamp import Stamp
 from yarpy.data.value import Float32, Int8, Int16, Int64, Vocab
 from yarpy.errors import DecodeError
+from yarpy.wire import framing
 from yarpy.wire.message import DATA, Message
 
 TYPES = {
@@ -498,3 +500,16 @@ def test_what_a_list_of_one_kind_takes_is_known_at_once(value: list[object]) -> 
     assert type(found[0]) is type(codec.decode(message))
     assert kinds(list(found[0])) == kinds(list(codec.decode(message)))
     assert all(codec.decode_leading(message[:size]) is None for size in range(len(message)))
+
+
+@pytest.mark.parametrize("width", [256, 257, 265, 266, 288])
+def test_a_list_that_may_be_the_header_of_a_cloud_is_looked_at_closer(width: int) -> None:
+    """A list of one number is complete after 12 bytes, and a header of a cloud goes on."""
+    head = HEAD.pack(width, 1, 1, 1, POINTS, width)
+    assert [codec.decode_leading(head[:size]) for size in range(13, HEAD.size)] == [None] * 8
+    leading = codec.decode_leading(head[:12])
+    assert leading is None or leading[1] == 12
+    for value in ([0], [1], [True, False], 0, "\1"):
+        message = b"".join(codec.encode(value))
+        if len(message) >= 12:
+            assert codec.decode_leading(message + framing.ACK) == (value, len(message))

@@ -12,6 +12,7 @@ from support.vectors import binaries, rows
 from yarpy.data.sig.pointcloud import KINDS, PointCloud
 from yarpy.data.walker import Walker
 from yarpy.errors import DecodeError
+from yarpy.wire import framing
 
 
 def packed(*words):
@@ -123,6 +124,40 @@ def test_clouds_byte_by_byte(width):
     for size in range(len(message)):
         assert walker.advance(message[:size]) > size and not walker.done
     assert walker.advance(message) == len(message) and walker.done
+
+
+@pytest.mark.parametrize("kind", ["xy", "xyz", "xyz_i", "interest", "normal"])
+@pytest.mark.parametrize("height", [1, 2, 3])
+@pytest.mark.parametrize("width", [1, 4, 255, 256, 257, 260, 265, 266, 288, 320, 384, 512, 640])
+def test_clouds_whose_header_comes_in_two_parts(width, height, kind):
+    """A list is complete where it ends, unless more has come, which may be the rest of a header."""
+    message = cloud(width, height, kind)
+    ends = []
+    for size in range(21):
+        walker = Walker()
+        walker.advance(message[:size])
+        if walker.done:
+            ends.append(size)
+        else:
+            assert walker.advance(message) == len(message) and walker.done
+    assert len(ends) <= 1 and all(walk(message[:end], 1) == end for end in ends)
+    assert len(ends) == 0 or width not in (256, 512), "which has elements of no kind"
+
+
+def test_a_list_before_what_cannot_be_the_rest_of_a_header_is_complete():
+    for rest in (framing.ACK, framing.number(7), packed(256, 0), packed(257, 1, 2)):
+        walker = Walker()
+        message = packed(257, 1, 2) + rest
+        need = 12
+        while not walker.done and need <= len(message):
+            need = walker.advance(message[:need])
+        assert walker.done and need == 12
+        assert Walker().advance(message) == 12
+
+
+def test_a_list_within_a_message_is_no_cloud():
+    walker = Walker(nested=True)
+    assert walker.advance(packed(257, 1, 2) + b"\0") == 12 and walker.done
 
 
 def test_short_lists_do_not_wait_for_a_header_of_a_cloud():

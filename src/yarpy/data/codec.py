@@ -39,7 +39,7 @@ from yarpy.data.python.loaded import loaded
 from yarpy.data.python.place import located
 from yarpy.data.reader import KEPT, SMALL, read_fresh, read_planned
 from yarpy.data.sig.cloud_head import HEAD as CLOUD_HEAD
-from yarpy.data.sig.cloud_head import POINTS, cloud_size
+from yarpy.data.sig.cloud_head import POINTS, cloud_size, may_be_cloud
 from yarpy.data.sig.cloud_head import SIZES as CLOUD_KINDS
 from yarpy.data.sig.image import Image
 from yarpy.data.sig.vector import Vector
@@ -310,6 +310,8 @@ def decode_leading(buffer: bytes) -> tuple[Any, int] | None:
         return None
     code, count = _read_head(buffer)
     if (code != LIST or count == 1) and len(buffer) >= _CLOUD and cloud_size(buffer):
+        return None
+    if 12 < len(buffer) < _CLOUD and buffer[12] < 2 and may_be_cloud(buffer):
         return None
     if code - LIST in KEPT and count > 0:  # numbers alone, whose length their count says
         end = 8 + count * FIXED[code - LIST][1]

@@ -3,8 +3,10 @@
 Replies and some messages come without any length. A Walker finds their end in a buffer that is
 still growing, without building objects. Rules: no byte is read twice, nothing is allocated on a
 header's word, and bytes that cannot be a message are refused at the first wrong one. A PointCloud
-may begin as a list does: where its header is there, or most of it, it is one. Messages of YARP 4.0
-are known by the tags that only it has; where there is none before a float32, the asker says so.
+may begin as a list does: where its header is there, or most of it, it is one; a list that ends
+within so few bytes is complete where no more has come, or what has is no part of such a header.
+Messages of YARP 4.0 are known by the tags that only it has; where there is none before a float32,
+the asker says so.
 """
 
 from __future__ import annotations
@@ -58,7 +60,8 @@ class Walker:
     Call `advance` with everything received so far, again and again, until `done`. Every call
     returns the least number of bytes that the message can have; if that is more than have come,
     call again when so many are there. Once `done`, it is the length of the message. DecodeError if
-    this is not a message, or longer than `limit` bytes. `yarp4`: it comes from YARP 4.0.
+    this is not a message, or longer than `limit` bytes. `yarp4`: it comes from YARP 4.0. `nested`:
+    it is part of a message, so it is a list, and there is nothing to wait for.
     """
 
     __slots__ = (
@@ -73,12 +76,12 @@ class Walker:
         "limit",
     )
 
-    def __init__(self, limit: int = 1 << 30, yarp4: bool = False) -> None:
+    def __init__(self, limit: int = 1 << 30, yarp4: bool = False, nested: bool = False) -> None:
         self._widths = WIDTHS_4 if yarp4 else WIDTHS_3
         self.limit = limit
         self.done = False
         self._begun = False
-        self._looked = False  # whether it is a cloud
+        self._looked = nested  # whether it is a cloud
         self._pos = 0
         # One entry per list that is open: the tag of its elements (0: each has its own), and how
         # many are to come. `_owed` is the least that all of these can take.
@@ -109,7 +112,11 @@ class Walker:
             self._begun = True
             self._pos = 8
             self._open(code & UNIT_MASK, count)
-        return self._walk(view, size)
+        end = self._walk(view, size)
+        if end < size and self.done and not self._looked and may_be_cloud(view):
+            self.done = False
+            return size + 1
+        return end
 
     def _cloud(self, view: Buffer, size: int) -> int:
         """The bytes of a PointCloud, or of its header while that is not all there; 0 for a message
@@ -127,8 +134,15 @@ class Walker:
         width = self._widths.get(kind, 4 if kind in (STRING, BLOB) or kind in ONLY_4 else 0)
         if kind and not width:  # no Bottle has such a code
             return _HEAD if size < 12 or may_be_cloud(view) else 0
+        if kind == 0 and size >= 12 and not self._is_tag(_read_i32(view, 8)[0]):
+            return _HEAD if may_be_cloud(view) else 0
         longer = 8 + count * (width or 5) >= _HEAD
         return _HEAD if longer or is_likely_cloud(view) else 0
+
+    def _is_tag(self, kind: int) -> bool:
+        """Return whether an element of a list can be of that kind."""
+        known = kind in self._widths or kind in ONLY_4 or kind in (STRING, BLOB)
+        return known or LIST <= kind < 2 * DICT
 
     def _walk(self, view: Buffer, size: int) -> int:
         kinds, left = self._kinds, self._left

@@ -37,7 +37,8 @@ def test_what_is_none(head: tuple[int, ...]) -> None:
 
 
 def test_beginnings() -> None:
-    assert all(may_be_cloud(HEADER[:size]) for size in range(12, 22))
+    assert all(may_be_cloud(HEADER[:size]) for size in range(9, 22))
+    assert not may_be_cloud(HEADER[:8] + b"\x03")
     assert not any(is_likely_cloud(HEADER[:size]) for size in range(12, 16))
     assert all(is_likely_cloud(HEADER[:size]) for size in range(16, 22))
     assert not may_be_cloud(HEADER[:12] + b"\x07")

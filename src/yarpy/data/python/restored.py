@@ -160,7 +160,7 @@ class _Reading:
     def _end(self, pos: int) -> int:
         """Return the byte at which the list that begins at `pos` ends."""
         rest = self._view[pos:]
-        walker = Walker(len(rest))
+        walker = Walker(len(rest), nested=True)
         walker.advance(rest)
         if not walker.done:
             raise Truncated(f"a list at byte {pos} that goes on behind the last element")

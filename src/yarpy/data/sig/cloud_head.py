@@ -30,6 +30,7 @@ SIZES: Final = {
 }
 _PLACE: Final = 13  # of the 266
 _WORD: Final = POINTS.to_bytes(4, "little")
+_CODES: Final = tuple(code.to_bytes(4, "little") for code in SIZES)
 _ENOUGH: Final = 16  # bytes: up to where all but the highest byte of the 266 is there
 
 _i32 = Struct("<i").unpack_from
@@ -52,8 +53,11 @@ def cloud_size(view: Buffer) -> int:
 
 
 def may_be_cloud(view: Buffer) -> bool:
-    """Return whether the beginning of a message, from 12 bytes on, can be that of such a header."""
+    """Return whether the beginning of a message, from 9 bytes on, can be that of such a header."""
     size = len(view)
+    if size < 12:
+        begun = bytes(view[8:])
+        return any(code.startswith(begun) for code in _CODES)
     if _i32(view, 8)[0] not in SIZES or (size > 12 and view[12] not in (0, 1)):
         return False
     there = bytes(view[_PLACE : _PLACE + 4])
