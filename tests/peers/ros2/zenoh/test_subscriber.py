@@ -89,6 +89,30 @@ def test_the_newest_are_kept(make: Make, way: str) -> None:
     assert reader.dropped == 19  # three were lost elsewhere
 
 
+def test_what_is_pushed_out_before_anything_is_read_is_counted(make: Make) -> None:
+    """But not what was published before there was a subscription."""
+    reader = make(Qos(depth=3))
+    put(reader.participant, *range(5, 31))
+    assert all_that_came(reader) == [28, 29, 30]
+    assert reader.dropped == 23
+
+
+def test_so_it_is_of_a_publisher_that_comes_later(make: Make) -> None:
+    reader = make(Qos(depth=3))
+    put(reader.participant, 1)
+    assert came(reader) == 1
+    wait_until(lambda: reader._firsts and reader._firsts._handle is None)  # it is heard
+    with ros2.Node("/later") as node:
+        writer = node.publisher(NAME, TEXT)
+        wait_until(lambda: reader._firsts and reader._firsts._handle is not None)
+        for _ in range(30):
+            writer.write("told while nobody reads")
+        wait_until(lambda: reader._firsts and reader._firsts._handle is None)
+        found = [reader.receive(wait=False) for _ in range(3)]
+        assert [item[0].number for item in found if item is not None] == [28, 29, 30]  # type: ignore[attr-defined]
+        assert reader.dropped == 27
+
+
 def test_all_are_kept(make: Make) -> None:
     reader = make(PROFILES["all"])
     put(reader.participant, *range(1, 1001))

@@ -137,11 +137,11 @@ class Endpoint(Inbox):
     def _watch(self, token: Token, come: bool) -> None:
         """A token of anybody. In a thread of Zenoh."""
         key = token.key
-        if not come or self._closed or key is None or key.name != self.name:
+        if self._closed or key is None or key.name != self.name or token.kind not in self.peers:
             return
-        if token.kind not in self.peers:
-            return
-        if self.key is None or self._mismatch is None:
+        if not come:
+            self.left(token)
+        elif self.key is None or self._mismatch is None:
             self._look()
         elif key[2:] != self.key[2:]:
             self._mismatch.look(token)
@@ -150,6 +150,9 @@ class Endpoint(Inbox):
 
     def joined(self, token: Token) -> None:
         """A peer with the same type has come. In a thread of Zenoh."""
+
+    def left(self, token: Token) -> None:
+        """A peer has gone, of whatever type. In a thread of Zenoh."""
 
     def _take_type(self) -> None:
         try:

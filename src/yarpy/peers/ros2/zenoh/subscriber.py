@@ -3,8 +3,8 @@
 Rules: the thread that reads waits in Zenoh (`Ring`) where it can. What Zenoh hands to a callback
 goes through the inbox: of a topic whose messages are kept for who comes late, where many are to be
 kept (the inbox has a limit in bytes, too), where another subscription of this process has the
-ring, and for a subclass that says so (`waits`). Numbers tell what was lost, in the ring, too: not
-how much, of a publisher of which nothing was read before.
+ring, and for a subclass that says so (`waits`). Numbers tell what was lost, in the ring, too
+(`Firsts`); what was published before the subscription is not.
 """
 
 from __future__ import annotations
@@ -20,10 +20,11 @@ from yarpy.peers.ros2.carrier import Incoming
 from yarpy.peers.ros2.event import MESSAGE, Event
 from yarpy.peers.ros2.key import Key
 from yarpy.peers.ros2.qos import PROFILES, promised
-from yarpy.peers.ros2.token import PUBLISHER, SUBSCRIBER, Token
+from yarpy.peers.ros2.token import PUBLISHER, SUBSCRIBER, Token, gid
 from yarpy.peers.ros2.zenoh.attachment import parse_attachment
 from yarpy.peers.ros2.zenoh.coalesced import Coalesced
 from yarpy.peers.ros2.zenoh.endpoint import Endpoint
+from yarpy.peers.ros2.zenoh.firsts import Firsts
 from yarpy.peers.ros2.zenoh.ring import Ring
 from yarpy.peers.zenoh.library import CALLS, WAKE
 
@@ -52,6 +53,7 @@ class Subscriber(Endpoint):
         self._kept = 0  # messages that wait to be read
         self._past = Coalesced(self._catch_up, f"yarpy past of {self.name}")
         self._ring: Ring | None = None
+        self._firsts: Firsts | None = None
         self._idle = False  # the reader waits for the inbox alone
         self._held: deque[Any] | None = None  # samples that wait for those in a ring to be read
 
@@ -84,7 +86,10 @@ class Subscriber(Endpoint):
             self._ring = Ring(
                 session, str(key), self._kept, lambda: self.participant.give_up(str(key))
             )
-            self._handles.append(self._ring)
+            seen = self.participant.graph.endpoints(self.name, PUBLISHER)
+            theirs = [gid(str(token)) for token in seen if token.key == key]
+            self._firsts = Firsts(session, str(key), theirs)  # behind it: not what it has not got
+            self._handles += self._ring, self._firsts
             if self._idle:
                 self._inbox.put(_LOOK[0])
         else:
@@ -93,8 +98,14 @@ class Subscriber(Endpoint):
             self._handles.append(session.declare_subscriber(f"{key}{BESIDE}", hear))
 
     def joined(self, token: Token) -> None:
+        if self._firsts is not None:
+            self._firsts.come(gid(str(token)))
         if token.qos.latched and not self.qos.latched and not self.given_qos:
             self._past()
+
+    def left(self, token: Token) -> None:
+        if self._firsts is not None:
+            self._firsts.leave(gid(str(token)))
 
     def _catch_up(self) -> None:
         """Subscribe to what is kept, too: a publisher has come that keeps something."""
@@ -163,7 +174,10 @@ class Subscriber(Endpoint):
                     self._refused = str(error)
                     log.warning("%s: a message of %s is lost: %s", self.port_name, self.name, error)
                 return None
-            before = self._numbers.get(sender, number - 1)
+            before = self._numbers.get(sender)
+            if before is None:
+                firsts = self._firsts
+                before = (number if firsts is None else firsts.first(sender, number)) - 1
             if number <= before and self._repeats:
                 return None
             if number > before + 1:
