@@ -13,6 +13,7 @@ import pytest
 from support import tls
 from support.access import allow
 from support.broker import Broker
+from support.paho_client import end
 from support.port import free_port
 from support.process import Process
 from support.wait import HANG, wait_until
@@ -283,5 +284,4 @@ def test_paho_reads_and_writes(out: yarpy.Port, reader: yarpy.BufferedPort) -> N
         assert clients[0].is_connected()
     finally:
         for client in clients:
-            client.disconnect()
-            client.loop_stop()
+            end(client)

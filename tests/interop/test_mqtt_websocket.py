@@ -12,6 +12,7 @@ import pytest
 from support import tls
 from support.access import allow
 from support.broker import Broker
+from support.paho_client import end
 from support.port import free_port
 from support.wait import HANG, wait_until
 
@@ -64,8 +65,7 @@ class Paho:
         return self
 
     def __exit__(self, *_: object) -> None:
-        self.client.disconnect()
-        self.client.loop_stop()
+        end(self.client)
 
 
 # -------------------------------------------------------------------------------- without a broker

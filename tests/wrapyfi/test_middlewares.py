@@ -19,6 +19,7 @@ from typing import Any
 import numpy as np
 import pytest
 from support.broker import Broker
+from support.paho_client import end
 from support.port import free_block, free_port
 from support.wait import HANG, wait_until
 
@@ -112,8 +113,7 @@ def _start_mqtt(peer: Peer, stack: ExitStack, monkeypatch: Any, folder: Path) ->
     client.on_subscribe = lambda *_: ready.append(True)
     client.connect("127.0.0.1", broker.port)
     client.loop_start()
-    stack.callback(client.loop_stop)
-    stack.callback(client.disconnect)
+    stack.callback(end, client)
     wait_until(lambda: bool(ready))
     peer.send = client.publish
 

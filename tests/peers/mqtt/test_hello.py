@@ -11,6 +11,7 @@ from typing import Any
 import paho.mqtt.client as paho
 import pytest
 from support.broker import Broker
+from support.paho_client import end
 from support.process import Process
 from support.wait import HANG
 
@@ -56,8 +57,7 @@ def heard(broker: Broker) -> Iterator[queue.Queue[bytes]]:
     watcher.subscribe("arm", 1)
     ready.get(timeout=HANG)
     yield found
-    watcher.disconnect()
-    watcher.loop_stop()
+    end(watcher)
 
 
 def arm(topic: str, word: str) -> Process:
@@ -115,8 +115,7 @@ def session_is_kept(broker: Broker, topic: str) -> bool:
     try:
         return said.get(timeout=HANG)
     finally:
-        client.disconnect()
-        client.loop_stop()
+        end(client)
 
 
 @pytest.mark.peer("mosquitto")
@@ -182,8 +181,7 @@ def test_messages_expire(broker: Broker) -> None:
         found = heard.get(timeout=HANG).properties
         assert 800 < found.MessageExpiryInterval <= 900
         assert found.UserProperty == [("unit", "deg")]
-    watcher.disconnect()
-    watcher.loop_stop()
+    end(watcher)
 
 
 # -- the packets ----------------------------------------------------------------------------------

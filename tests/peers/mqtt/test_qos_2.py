@@ -7,6 +7,7 @@ from pathlib import Path
 import paho.mqtt.client as paho
 import pytest
 from support.broker import Broker
+from support.paho_client import end
 from support.wait import HANG, wait_until
 
 import yarpy
@@ -49,8 +50,7 @@ def test_paho_writes_to_a_port(names: yarpy.LocalNames, version: int) -> None:
         for each in sent:  # the whole handshake is over
             each.wait_for_publish(HANG)
             assert each.is_published()
-        program.disconnect()
-        program.loop_stop()
+        end(program)
 
 
 @pytest.mark.peer("mosquitto")
@@ -133,5 +133,4 @@ def test_a_client_that_reads_is_granted_less(names: yarpy.LocalNames) -> None:
         program.loop_start()
         wait_until(lambda: granted)
         assert granted == [0]
-        program.disconnect()
-        program.loop_stop()
+        end(program)

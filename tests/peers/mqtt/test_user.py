@@ -8,6 +8,7 @@ import paho.mqtt.client as paho
 import pytest
 from paho.mqtt.packettypes import PacketTypes
 from paho.mqtt.properties import Properties
+from support.paho_client import end
 from support.wait import HANG
 
 import yarpy
@@ -111,5 +112,4 @@ def test_paho_gives_and_gets_user_properties() -> None:
             assert got.properties.UserProperty == properties.UserProperty
         finally:
             for one in (writer, reader):
-                one.disconnect()
-                one.loop_stop()
+                end(one)

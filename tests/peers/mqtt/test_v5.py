@@ -15,6 +15,7 @@ from paho.mqtt.packettypes import PacketTypes
 from paho.mqtt.properties import Properties
 from paho.mqtt.subscribeoptions import SubscribeOptions
 from support.broker import Broker
+from support.paho_client import end
 from support.wait import HANG, wait_until
 
 import yarpy
@@ -114,8 +115,7 @@ def program(port: Any, heard: queue.Queue[Any] | None = None, **said: Any) -> It
     try:
         yield made
     finally:
-        made.disconnect()
-        made.loop_stop()
+        end(made)
 
 
 def properties(kind: int, **said: object) -> Properties:
@@ -197,8 +197,7 @@ def test_the_will_of_paho_is_not_put_off(names: yarpy.LocalNames) -> None:
             flags, _ = told.get(timeout=HANG)  # it is back, and nobody knows it
             assert not flags.session_present
         finally:
-            made.disconnect()
-            made.loop_stop()
+            end(made)
 
 
 def test_paho_hears_that_there_is_no_login_of_another_kind(names: yarpy.LocalNames) -> None:
@@ -213,8 +212,7 @@ def test_paho_hears_that_there_is_no_login_of_another_kind(names: yarpy.LocalNam
         try:
             assert str(told.get(timeout=HANG)) == "Bad authentication method"
         finally:
-            made.disconnect()
-            made.loop_stop()
+            end(made)
 
 
 @pytest.mark.peer("mosquitto")

@@ -8,6 +8,7 @@ from contextlib import contextmanager
 
 import paho.mqtt.client as paho
 import pytest
+from support.paho_client import end
 from support.wait import HANG, wait_until
 
 import yarpy
@@ -133,5 +134,4 @@ def test_the_will_of_a_program_with_paho(names: yarpy.LocalNames) -> None:
         sock.shutdown(socket.SHUT_RDWR)
         last = port.read(timeout=HANG)
         assert last is not None and last.value == "arm is gone"
-        program.disconnect()
-        program.loop_stop()
+        end(program)
