@@ -77,7 +77,23 @@ def test_a_busy_port(lone, port):
         said = lone.run("server", "--ip", "127.0.0.1", "--socket", str(port))
     assert said.returncode == 1
     assert re.search(rf"^error: .*cannot listen on TCP port {port}", said.stderr, re.M)
+    assert "kill -CONT" in said.stderr and "another number with --socket" in said.stderr
     assert not conf(lone).exists()
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="nothing stops a program there")
+def test_a_server_that_was_stopped(lone, port):
+    words = ("server", "--ip", "127.0.0.1", "--socket", str(port))
+    with lone.start(*words) as process:
+        process.wait_line("Ready", stream="out")
+        process.signal(signal.SIGSTOP)
+        said = lone.run(*words)
+        process.signal(signal.SIGCONT)
+        assert said.returncode == 1
+        assert "a name server that was stopped (`fg`, or kill -CONT, lets it go on)" in said.stderr
+        assert said.stderr.endswith("give this one another number with --socket\n")
+        again = lone.run(*words)
+    assert "is running here already" in again.stderr
 
 
 def test_a_server_that_runs_already(lone, server):

@@ -22,6 +22,7 @@ Exit codes: 0 ended by a signal; 1 the address is in use, or in dispute, or a fi
 
 from __future__ import annotations
 
+import errno
 import os
 import threading
 from collections import deque
@@ -357,18 +358,25 @@ def _overwritten(reason: str) -> None:
 
 
 def _explained(server: Server, found: Configuration, error: AddressError) -> AddressError:
-    """The name server that has the port number, if it is one."""
+    """Return what to say of the program that has the port number, if one has."""
+    another = "give this one another number with --socket"
     try:
         with yarpy.YarpNameClient("127.0.0.1", server.port, timeout=1.0) as client:
             known = client.query(server.namespace)
     except (yarpy.NoNameServer, OSError):
         known = None
     if known is None:
-        return error
+        if getattr(error.__cause__, "errno", 0) != errno.EADDRINUSE:
+            return error
+        return AddressError(
+            f"cannot listen on TCP port {server.port}, where a program listens that says nothing "
+            "of names: a name server that was stopped (`fg`, or kill -CONT, lets it go on) or that "
+            f"hangs (end it), or another program; {another}"
+        )
     host, number = known.host, known.port
     used = any((one.host, one.port) == (host, number) for one in found.servers)
     use = "programs use it" if used else f"`yarpy conf {host} {number}` lets programs use it"
     return AddressError(
         f"a name server for {known.name} is running here already, at {known.address}: {use}; for "
-        "another one end it, or give this one another number with --socket"
+        f"another one end it, or {another}"
     )
