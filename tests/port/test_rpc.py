@@ -694,6 +694,33 @@ def test_what_never_left_goes_again_by_itself(
         assert client._hub.outputs.links != (link,)
 
 
+@pytest.mark.parametrize("carrier", ["tcp", "memory", "local"])
+def test_no_handler_begins_while_its_server_closes_and_what_is_dropped_is_counted(
+    carrier: str, names: LocalNames
+) -> None:
+    begun, go_on = threading.Event(), threading.Event()
+    heard: list[int] = []
+
+    def handler(message: Message) -> None:
+        heard.append(message.value[0])
+        begun.set()
+        assert go_on.wait(HANG)
+
+    server = RpcServer("/server", handler, names=names)
+    with RpcClient("/server", carrier=carrier, names=names) as client, ThreadPoolExecutor() as pool:
+        for number in range(5):
+            client.tell([number], HANG)
+        assert begun.wait(HANG)
+        closing = pool.submit(server.close, HANG)
+        wait_until(lambda: server._hub.inputs.mailbox.stopped)
+        assert not closing.done()
+        go_on.set()
+        closing.result(HANG)
+        counts = server.stats.as_dict()["past"]["inputs"]
+        assert heard == [0]
+        assert counts["messages"] == len(heard) + counts["drops"]
+
+
 def test_what_may_have_left_is_not_told_again(
     names: LocalNames, monkeypatch: pytest.MonkeyPatch
 ) -> None:

@@ -279,7 +279,8 @@ class RpcClient(BasePort, Generic[T]):
 
     def tell(self, statement: object, timeout: float | None = None) -> None:
         """Send it without waiting for an answer; errors as of `call`. What never left is sent again
-        by itself, too."""
+        by itself, too. A server that closes drops what it has not begun with: that something was
+        done only an answer says."""
         self._check_open()
         seconds = self._timeout if timeout is None else timeout
         self._hub.life.calls.run(seconds, self._tell, Packet(statement))
