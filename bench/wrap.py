@@ -27,8 +27,8 @@ import numpy as np
 
 import yarpy
 from yarpy.kits import wrap
-from yarpy.kits.wrap.frame import Frame, from_parts, to_parts
-from yarpy.kits.wrap.tree import from_text, to_text
+from yarpy.kits.wrap.value.frame import Frame, from_parts, to_parts
+from yarpy.kits.wrap.value.tree import from_text, to_text
 
 SMALL = {"joint": 3, "angle": 45.0}
 PICTURE = np.random.default_rng(1).integers(0, 255, (480, 640, 3), "u1")

@@ -54,14 +54,14 @@ from yarpy.kits.thrift.apache.message import Call as ApacheCall
 from yarpy.kits.thrift.apache.scan import Scan
 from yarpy.kits.thrift.client import is_failure, version
 from yarpy.kits.thrift.library import load as load_thrift
-from yarpy.kits.wrap.frame import Frame, from_bytes, to_bytes
-from yarpy.kits.wrap.hint import shape_of
 from yarpy.kits.wrap.middleware import question_of
-from yarpy.kits.wrap.npy import from_npy, to_npy
-from yarpy.kits.wrap.payload import asked, unpack
-from yarpy.kits.wrap.tensor import as_floats
-from yarpy.kits.wrap.tensor import read as read_tensor
-from yarpy.kits.wrap.tree import to_text
+from yarpy.kits.wrap.value.frame import Frame, from_bytes, to_bytes
+from yarpy.kits.wrap.value.hint import shape_of
+from yarpy.kits.wrap.value.npy import from_npy, to_npy
+from yarpy.kits.wrap.value.payload import asked, unpack
+from yarpy.kits.wrap.value.tensor import as_floats
+from yarpy.kits.wrap.value.tensor import read as read_tensor
+from yarpy.kits.wrap.value.tree import to_text
 from yarpy.limit import SCRIPT_SECONDS
 from yarpy.link.begin.handshake import find_carrier, recognise
 from yarpy.monitors.base import Place

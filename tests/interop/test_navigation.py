@@ -17,8 +17,8 @@ from yarpy.kits.devices.interfaces.map2d import Map2D
 from yarpy.kits.devices.interfaces.navigation import Navigation2D
 from yarpy.kits.devices.interfaces.place import Area, Place
 from yarpy.kits.devices.interfaces.place import Path as Route
-from yarpy.kits.devices.simulated.base import SimulatedBase
-from yarpy.kits.devices.simulated.map_storage import MapStorage
+from yarpy.kits.devices.simulated.navigation.base import SimulatedBase
+from yarpy.kits.devices.simulated.navigation.map_storage import MapStorage
 
 pytestmark = pytest.mark.peer("g++")
 

@@ -18,11 +18,11 @@ from support.wait import HANG, wait_until
 import yarpy
 from yarpy.config.authority import make
 from yarpy.errors import AccessRefused, LocalProtocolError, YarpError
-from yarpy.peers.zenoh import exchange as zenoh_exchange
 from yarpy.peers.zenoh import reachability as direct
 from yarpy.peers.zenoh.names import ZenohNames
 from yarpy.peers.zenoh.router import open_router
 from yarpy.peers.zenoh.transport import close
+from yarpy.peers.zenoh.tunnel import exchange as zenoh_exchange
 
 pytest.importorskip("zenoh", reason='Zenoh: pip install "yarpy[zenoh]"')
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from queue import Empty, SimpleQueue
 
-from yarpy.peers.zenoh.pipe import WAKE, ZenohPipe
+from yarpy.peers.zenoh.tunnel.pipe import WAKE, ZenohPipe
 
 
 class Line:

@@ -25,7 +25,7 @@ from yarpy.kits.wrap.middleware import (
     Publisher,
     Way,
 )
-from yarpy.kits.wrap.shape import ANY
+from yarpy.kits.wrap.value.shape import ANY
 
 COUNT = 20
 

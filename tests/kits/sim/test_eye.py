@@ -8,7 +8,7 @@ from yarpy.kits.sim.body import Body
 from yarpy.kits.sim.eye import PAIR, Eye, Shutter
 from yarpy.kits.sim.icub import ICUB_HEAD
 from yarpy.kits.sim.joint import Joint
-from yarpy.kits.sim.scene import room
+from yarpy.kits.sim.render.scene import room
 
 scene = cache(room)  # not before a test wants it: workers that run none would paint it, too
 

@@ -11,7 +11,7 @@ import pytest
 
 import yarpy
 from yarpy.kits.wrap.method import Method, Output
-from yarpy.kits.wrap.shape import ANY
+from yarpy.kits.wrap.value.shape import ANY
 
 
 def method(func: Any, *topics: str) -> Method:

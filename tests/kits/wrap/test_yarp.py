@@ -10,7 +10,7 @@ from support.wait import HANG, wait_until
 
 import yarpy
 from yarpy.kits import wrap
-from yarpy.kits.wrap.tree import to_text
+from yarpy.kits.wrap.value.tree import to_text
 
 Picture = Annotated[np.ndarray, wrap.Image("bgr")]
 

@@ -12,7 +12,7 @@ from support.wait import HANG, wait_until
 
 import yarpy
 from yarpy.kits import wrap
-from yarpy.kits.wrap.hint import shape_of
+from yarpy.kits.wrap.value.hint import shape_of
 from yarpy.peers.ros.middleware import type_of
 
 Picture = Annotated[np.ndarray, wrap.Image("bgr")]

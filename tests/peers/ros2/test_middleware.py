@@ -15,8 +15,8 @@ from support.wait import HANG, wait_until
 
 import yarpy
 from yarpy.kits import wrap
-from yarpy.kits.wrap.hint import shape_of
 from yarpy.kits.wrap.middleware import Way
+from yarpy.kits.wrap.value.hint import shape_of
 from yarpy.peers.ros2.middleware import target_of
 
 for _name in ("zenoh", "rosbags", "xxhash"):

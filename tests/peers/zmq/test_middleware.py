@@ -11,7 +11,7 @@ from support.wait import HANG
 
 import yarpy
 from yarpy.kits import wrap
-from yarpy.kits.wrap.tree import to_text
+from yarpy.kits.wrap.value.tree import to_text
 from yarpy.peers.zmq.broker import keep_ready
 
 zmq = pytest.importorskip("zmq")

@@ -91,7 +91,6 @@ if TYPE_CHECKING:
     from yarpy.kits.devices.simulated.analog import SimulatedAnalogSensor
     from yarpy.kits.devices.simulated.arm import SimulatedArm
     from yarpy.kits.devices.simulated.audio import SimulatedMicrophone, SimulatedSpeaker
-    from yarpy.kits.devices.simulated.base import SimulatedBase
     from yarpy.kits.devices.simulated.battery import SimulatedBattery
     from yarpy.kits.devices.simulated.camera import SimulatedCamera
     from yarpy.kits.devices.simulated.coupling import SimulatedCoupling
@@ -101,9 +100,10 @@ if TYPE_CHECKING:
     from yarpy.kits.devices.simulated.imu import SimulatedImu
     from yarpy.kits.devices.simulated.joints import SimulatedJoints
     from yarpy.kits.devices.simulated.joypad import SimulatedJoypad
-    from yarpy.kits.devices.simulated.laser import SimulatedLaser
-    from yarpy.kits.devices.simulated.localized_laser import LocalizedLaser
-    from yarpy.kits.devices.simulated.map_storage import MapStorage
+    from yarpy.kits.devices.simulated.navigation.base import SimulatedBase
+    from yarpy.kits.devices.simulated.navigation.laser import SimulatedLaser
+    from yarpy.kits.devices.simulated.navigation.localized_laser import LocalizedLaser
+    from yarpy.kits.devices.simulated.navigation.map_storage import MapStorage
     from yarpy.kits.devices.simulated.position_sensor import SimulatedPositionSensor
     from yarpy.kits.devices.simulated.serial import SimulatedSerialPort
     from yarpy.kits.devices.simulated.speech import SimulatedSynthesizer, SimulatedTranscription
@@ -156,7 +156,7 @@ else:
         "simulated.analog": "SimulatedAnalogSensor",
         "simulated.arm": "SimulatedArm",
         "simulated.audio": "SimulatedMicrophone SimulatedSpeaker",
-        "simulated.base": "SimulatedBase",
+        "simulated.navigation.base": "SimulatedBase",
         "simulated.battery": "SimulatedBattery",
         "simulated.camera": "SimulatedCamera",
         "simulated.coupling": "SimulatedCoupling",
@@ -166,9 +166,9 @@ else:
         "simulated.imu": "SimulatedImu",
         "simulated.joints": "SimulatedJoints",
         "simulated.joypad": "SimulatedJoypad",
-        "simulated.laser": "SimulatedLaser",
-        "simulated.localized_laser": "LocalizedLaser",
-        "simulated.map_storage": "MapStorage",
+        "simulated.navigation.laser": "SimulatedLaser",
+        "simulated.navigation.localized_laser": "LocalizedLaser",
+        "simulated.navigation.map_storage": "MapStorage",
         "simulated.position_sensor": "SimulatedPositionSensor",
         "simulated.serial": "SimulatedSerialPort",
         "simulated.speech": "SimulatedSynthesizer SimulatedTranscription",

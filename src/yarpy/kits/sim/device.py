@@ -90,7 +90,7 @@ class SimulatedEye(_Moved):
 
     def _on(self, head: HeadBoard) -> object:
         from yarpy.kits.sim.eye import Eye
-        from yarpy.kits.sim.scene import room
+        from yarpy.kits.sim.render.scene import room
 
         return Eye(head.shutter, room(), self._side, *self._size)
 

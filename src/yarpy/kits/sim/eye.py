@@ -14,8 +14,8 @@ from yarpy.data.sig.image import Image
 from yarpy.kits.sim.body import Body
 from yarpy.kits.sim.head import Side, eye_pose
 from yarpy.kits.sim.joint import Joint
-from yarpy.kits.sim.renderer import Renderer
-from yarpy.kits.sim.scene import Scene
+from yarpy.kits.sim.render.renderer import Renderer
+from yarpy.kits.sim.render.scene import Scene
 
 LARGEST: Final = 2048  # pixels, either way
 PAIR: Final = 0.015  # most seconds between the two pictures of a pair

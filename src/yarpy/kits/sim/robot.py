@@ -64,7 +64,7 @@ def icub_head(size: tuple[int, int] = SIZE, clock: Clock = now) -> Parts:
     from yarpy.kits.sim.eye import Eye, Shutter
     from yarpy.kits.sim.head_frames import HeadFrames
     from yarpy.kits.sim.inertial import Inertial
-    from yarpy.kits.sim.scene import room
+    from yarpy.kits.sim.render.scene import room
 
     body = Body([Joint(axis) for axis in ICUB_HEAD], clock)
     shutter, scene = Shutter(body), room()

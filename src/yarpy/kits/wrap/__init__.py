@@ -16,11 +16,11 @@ from collections.abc import Callable
 from typing import TypeVar, Unpack
 
 from yarpy.errors import RemoteError
-from yarpy.kits.wrap.array import Image
 from yarpy.kits.wrap.decorator import Handle, Stream, activate, last, on, stream
 from yarpy.kits.wrap.method import Changes
 from yarpy.kits.wrap.middleware import Received
 from yarpy.kits.wrap.setting import configure
+from yarpy.kits.wrap.value.array import Image
 
 R = TypeVar("R")
 

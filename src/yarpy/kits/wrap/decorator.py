@@ -19,7 +19,7 @@ from yarpy.kits.wrap import setting
 from yarpy.kits.wrap.method import EVERYBODY, MISSING, UNDECIDED, Method, Missing, Output
 from yarpy.kits.wrap.middleware import Encoding, Keep
 from yarpy.kits.wrap.mode import MODES, Listen, Mode
-from yarpy.kits.wrap.typed import Decorator
+from yarpy.kits.wrap.value.typed import Decorator
 from yarpy.qos import Qos
 
 R = TypeVar("R")

@@ -18,7 +18,7 @@ from yarpy.errors import Timeout
 from yarpy.kits.wrap.inbox import Inbox, pump
 from yarpy.kits.wrap.method import Method, Missing, Output, middleware_of
 from yarpy.kits.wrap.middleware import Item, Keep, Listener, Publisher, Received
-from yarpy.kits.wrap.shape import Shape
+from yarpy.kits.wrap.value.shape import Shape
 
 SET: Final = 64  # values of each topic that wait for those of the others
 

@@ -23,7 +23,6 @@ from typing import (
 )
 
 from yarpy.errors import AddressError, DecodeError, LocalProtocolError
-from yarpy.kits.wrap.hint import shape_of
 from yarpy.kits.wrap.middleware import (
     ENCODINGS,
     Encoding,
@@ -33,7 +32,8 @@ from yarpy.kits.wrap.middleware import (
     Signature,
     Way,
 )
-from yarpy.kits.wrap.shape import ANY, Shape
+from yarpy.kits.wrap.value.hint import shape_of
+from yarpy.kits.wrap.value.shape import ANY, Shape
 from yarpy.qos import Qos
 from yarpy.registry import middlewares
 

@@ -21,7 +21,7 @@ from typing import Any, Final, Literal, Protocol, TypeAlias, runtime_checkable
 
 from yarpy.data.stamp import Stamp
 from yarpy.errors import DecodeError, RemoteError
-from yarpy.kits.wrap.shape import ANY, Shape
+from yarpy.kits.wrap.value.shape import ANY, Shape
 from yarpy.qos import Qos
 
 Encoding: TypeAlias = Literal["native", "frame", "wrapyfi"]

@@ -29,7 +29,7 @@ from yarpy.errors import LocalProtocolError, PortClosed
 from yarpy.kits.wrap.flow import Inlets, Outlets
 from yarpy.kits.wrap.method import Method, Output, middleware_of
 from yarpy.kits.wrap.middleware import Client, Failure, Item, Received, Server
-from yarpy.kits.wrap.shape import Shape
+from yarpy.kits.wrap.value.shape import Shape
 from yarpy.log import logger
 
 log = logger("yarpy.wrap")

@@ -16,8 +16,8 @@ from yarpy.errors import DecodeError, LinkClosed, UnknownName, YarpError
 from yarpy.kits.wrap.follower import Follower
 from yarpy.kits.wrap.middleware import Answer, Failure, Item, Received, Way, question_of
 from yarpy.kits.wrap.port_end import PortEnd
-from yarpy.kits.wrap.shape import Shape
-from yarpy.kits.wrap.spelling import (
+from yarpy.kits.wrap.value.shape import Shape
+from yarpy.kits.wrap.value.spelling import (
     FORMS,
     answered,
     failure,
@@ -28,7 +28,7 @@ from yarpy.kits.wrap.spelling import (
     received,
     text_of,
 )
-from yarpy.kits.wrap.tree import from_text
+from yarpy.kits.wrap.value.tree import from_text
 from yarpy.link.begin.handshake import asked_carrier
 from yarpy.port.connection import ConnectionEvent
 from yarpy.port.port import BufferedPort

@@ -13,10 +13,10 @@ from typing import Any, TypeVar
 
 from yarpy.contact import parse_contact
 from yarpy.errors import LinkClosed, UnknownName, YarpError
-from yarpy.kits.wrap import payload, spelling
 from yarpy.kits.wrap.middleware import Answer, Failure, Item, Received, Way, question_of
 from yarpy.kits.wrap.port_end import PortEnd
-from yarpy.kits.wrap.shape import Shape
+from yarpy.kits.wrap.value import payload, spelling
+from yarpy.kits.wrap.value.shape import Shape
 from yarpy.link.begin.handshake import find_carrier
 from yarpy.port.base import BasePort
 from yarpy.port.port import BufferedPort

@@ -18,11 +18,11 @@ from typing import Any, Final
 from yarpy import fork
 from yarpy.data.stamp import Stamp
 from yarpy.errors import DecodeError, LocalProtocolError, Timeout
-from yarpy.kits.wrap.array import Picture
 from yarpy.kits.wrap.middleware import Answer, Item, Received, Way
 from yarpy.kits.wrap.port_end import PortEnd
-from yarpy.kits.wrap.shape import Scalar, Shape, Wired
-from yarpy.kits.wrap.tree import from_text, to_text
+from yarpy.kits.wrap.value.array import Picture
+from yarpy.kits.wrap.value.shape import Scalar, Shape, Wired
+from yarpy.kits.wrap.value.tree import from_text, to_text
 from yarpy.peers.ros.message.library import default_library
 from yarpy.peers.ros.message.message import Message as RosMessage
 from yarpy.peers.ros.node.node import Node

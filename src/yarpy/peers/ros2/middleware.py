@@ -12,7 +12,7 @@ from typing import Any, Final
 
 from yarpy.errors import LinkClosed, UnknownName, YarpError
 from yarpy.kits.wrap.middleware import Answer, Way
-from yarpy.kits.wrap.shape import Shape
+from yarpy.kits.wrap.value.shape import Shape
 from yarpy.link.begin.handshake import find_carrier
 from yarpy.peers.ros.middleware import Reader, Writer, topic_of, type_of
 from yarpy.peers.ros.service.method import Service, Types, error_of, handled

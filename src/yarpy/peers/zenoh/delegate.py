@@ -25,9 +25,9 @@ from yarpy.names.address import is_local
 from yarpy.nameserver.command import NameService
 from yarpy.nameserver.delegate import DelegateContext
 from yarpy.peers.zenoh.address import host_zid
-from yarpy.peers.zenoh.gateway import Gateway, bring
 from yarpy.peers.zenoh.names import ZenohNames
-from yarpy.peers.zenoh.pipe import ZenohPipe
+from yarpy.peers.zenoh.tunnel.gateway import Gateway, bring
+from yarpy.peers.zenoh.tunnel.pipe import ZenohPipe
 
 log = logger("yarpy.name_server")
 

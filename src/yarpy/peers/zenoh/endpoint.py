@@ -26,9 +26,9 @@ from yarpy.peers.zenoh.carrier import (
     Incoming,
     Outgoing,
 )
-from yarpy.peers.zenoh.exchange import undeclare
 from yarpy.peers.zenoh.library import CALLS, WAKE, load
 from yarpy.peers.zenoh.transport import SharedSession
+from yarpy.peers.zenoh.tunnel.exchange import undeclare
 from yarpy.route import CarrierSpec, parse_carrier
 from yarpy.transports.inbox import Inbox
 

@@ -18,10 +18,10 @@ from yarpy.errors import AddressError, NoNameServer
 from yarpy.names.default import DEFAULT
 from yarpy.peers.zenoh.address import ZENOH
 from yarpy.peers.zenoh.endpoint import Asker, Endpoint, Publisher, Server, Subscriber
-from yarpy.peers.zenoh.exchange import dial_inside
 from yarpy.peers.zenoh.names import on_zenoh
 from yarpy.peers.zenoh.place import SETTING
 from yarpy.peers.zenoh.transport import share
+from yarpy.peers.zenoh.tunnel.exchange import dial_inside
 from yarpy.route import Route
 from yarpy.transports.base import Transport
 from yarpy.transports.opener import Opener

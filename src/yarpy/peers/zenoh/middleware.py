@@ -12,10 +12,10 @@ from queue import SimpleQueue
 from typing import Any
 
 from yarpy.errors import LinkClosed, PortClosed, Timeout, UnknownName
-from yarpy.kits.wrap import payload
 from yarpy.kits.wrap.inbox import Inbox
 from yarpy.kits.wrap.middleware import Answer, Failure, Item, Received, Way, question_of
-from yarpy.kits.wrap.shape import Shape
+from yarpy.kits.wrap.value import payload
+from yarpy.kits.wrap.value.shape import Shape
 from yarpy.log import logger
 from yarpy.peers.zenoh.library import CALLS, load
 from yarpy.peers.zenoh.transport import SharedSession, share

@@ -30,12 +30,12 @@ from yarpy.names.base import Contacts, NameClient, Strings
 from yarpy.names.fallback_client import SeveralNames
 from yarpy.names.registration_line import registration_line
 from yarpy.peers.zenoh import key as zenoh_key
-from yarpy.peers.zenoh.exchange import Exchange, Welcome, join, know, leave, undeclare
 from yarpy.peers.zenoh.key import Entry, name_key, newest, port_token
 from yarpy.peers.zenoh.library import CALLS, load
 from yarpy.peers.zenoh.place import SETTING, place
 from yarpy.peers.zenoh.reachability import ANYWHERE, Reachability, machine
 from yarpy.peers.zenoh.transport import SharedSession, share
+from yarpy.peers.zenoh.tunnel.exchange import Exchange, Welcome, join, know, leave, undeclare
 from yarpy.transports.bind import listening_host
 
 if TYPE_CHECKING:

@@ -26,7 +26,7 @@ from yarpy.errors import (
     UnknownName,
     UnknownPlugin,
 )
-from yarpy.kits.wrap.tree import Buffer
+from yarpy.kits.wrap.value.tree import Buffer
 from yarpy.limit import ZMQ_MESSAGE
 
 _LONGEST: Final = 0.1  # seconds until a socket that is being waited for can be closed

@@ -10,9 +10,9 @@ from __future__ import annotations
 import threading
 from typing import Any
 
-from yarpy.kits.wrap import payload
 from yarpy.kits.wrap.middleware import Answer, Failure, Item, Received, Way, question_of
-from yarpy.kits.wrap.shape import Shape
+from yarpy.kits.wrap.value import payload
+from yarpy.kits.wrap.value.shape import Shape
 from yarpy.peers.zmq.broker import keep_ready
 from yarpy.peers.zmq.link import Answerer, Caller, In, Out, parse_place
 

@@ -1,7 +1,7 @@
 """Values as bytes: JSON, and behind a header in JSON the pixels, the samples or a JPEG file.
 
 Rules: where the header ends is the middleware's own (`Join`). Whoever listens understands all of
-them, and frames of yarpy. What comes is checked before memory is taken (`wrap.payload`).
+them, and frames of yarpy. What comes is checked before memory is taken (`wrap.value.payload`).
 """
 
 from __future__ import annotations
@@ -15,8 +15,8 @@ import numpy as np
 
 import yarpy
 from wrapyfi.middlewares._form import Native, Picture, Sound
-from yarpy.kits.wrap import payload
-from yarpy.kits.wrap.shape import ANY
+from yarpy.kits.wrap.value import payload
+from yarpy.kits.wrap.value.shape import ANY
 
 #: header and body as what is sent
 Join: TypeAlias = Callable[[dict[str, Any], bytes], Any]

@@ -29,7 +29,7 @@ from wrapyfi.middlewares._ros import (
 )
 from wrapyfi.middlewares._side import Medium, Nothing, offer
 from yarpy.kits.wrap.middleware import Failure
-from yarpy.kits.wrap.spelling import failure, failure_of
+from yarpy.kits.wrap.value.spelling import failure, failure_of
 from yarpy.peers.ros2.dds.participant import POOL
 from yarpy.peers.ros2.key import domain
 from yarpy.peers.ros2.message.library import default_library

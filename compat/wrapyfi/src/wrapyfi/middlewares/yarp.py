@@ -24,8 +24,8 @@ from wrapyfi.middlewares._form import Native, Picture, Sound
 from wrapyfi.middlewares._side import SKIP, Medium, Nothing, offer
 from yarpy.kits.wrap.follower import Follower
 from yarpy.kits.wrap.middleware import Failure
-from yarpy.kits.wrap.npy import from_npy, to_npy
-from yarpy.kits.wrap.spelling import failure, failure_of, frame_of
+from yarpy.kits.wrap.value.npy import from_npy, to_npy
+from yarpy.kits.wrap.value.spelling import failure, failure_of, frame_of
 from yarpy.network.asking import ask_server
 
 OPENING = 60.0  # seconds for a busy name server; programs of Wrapyfi know no limit there

@@ -23,8 +23,8 @@ import yarpy
 from wrapyfi.middlewares._form import Native, Picture, Sound
 from wrapyfi.middlewares._parameters import ZeroMQMiddlewareParamServer
 from wrapyfi.middlewares._side import Medium, Nothing, offer
-from yarpy.kits.wrap import payload
 from yarpy.kits.wrap.middleware import Failure
+from yarpy.kits.wrap.value import payload
 from yarpy.limit import ZMQ_MESSAGE
 from yarpy.peers.zmq.broker import keep_ready
 from yarpy.peers.zmq.link import In, Out, context

@@ -12,7 +12,7 @@ from __future__ import annotations
 from typing import Any, Final
 
 from yarpy.errors import DecodeError
-from yarpy.kits.wrap.tree import from_text, to_text
+from yarpy.kits.wrap.value.tree import from_text, to_text
 
 MARK: Final = b'{"kind": '
 _LISTED: Final = frozenset(

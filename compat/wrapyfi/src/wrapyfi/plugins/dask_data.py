@@ -15,7 +15,7 @@ from typing import Any
 
 from wrapyfi.utils.core_utils import Plugin, PluginRegistrar
 from yarpy.errors import DecodeError
-from yarpy.kits.wrap.npy import from_npy, to_npy
+from yarpy.kits.wrap.value.npy import from_npy, to_npy
 from yarpy.limit import check_json
 
 try:

@@ -12,7 +12,7 @@ from typing import Any
 
 from wrapyfi.plugins._extra import ours_of, pickled
 from wrapyfi.utils.core_utils import Plugin, PluginRegistrar
-from yarpy.kits.wrap.npy import from_npy, to_npy
+from yarpy.kits.wrap.value.npy import from_npy, to_npy
 
 try:
     import jax

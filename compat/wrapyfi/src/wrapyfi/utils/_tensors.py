@@ -17,9 +17,9 @@ from typing import Any
 
 from yarpy.data.python.array import array_of
 from yarpy.data.python.loaded import loaded
-from yarpy.kits.wrap.npy import to_npy
-from yarpy.kits.wrap.tensor import read
-from yarpy.kits.wrap.tree import untag
+from yarpy.kits.wrap.value.npy import to_npy
+from yarpy.kits.wrap.value.tensor import read
+from yarpy.kits.wrap.value.tree import untag
 
 #: the package that a class is of, its tag, the option that names the device of listeners
 _TAGS = {

@@ -1,6 +1,6 @@
 """NativeObject: JSON with tags, both ways, and the plug-ins of users.
 
-Rules: the tags and texts are those of `wrap.tree`. A pickle is never read, whoever sends it.
+Rules: the tags and texts are those of `wrap.value.tree`. A pickle is never read, whoever sends it.
 """
 
 from __future__ import annotations
@@ -11,7 +11,7 @@ from typing import Any
 from wrapyfi.utils._shipped import for_tag, for_type
 from wrapyfi.utils._tensors import gathered, planted
 from wrapyfi.utils.core_utils import PluginRegistrar
-from yarpy.kits.wrap.tree import OWN, PLAIN, TAG, TreeEncoder, untag
+from yarpy.kits.wrap.value.tree import OWN, PLAIN, TAG, TreeEncoder, untag
 
 
 class JsonEncoder(json.JSONEncoder):

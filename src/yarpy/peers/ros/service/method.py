@@ -21,10 +21,10 @@ from typing import Any, Final, NamedTuple
 from yarpy.data.sig.image import Image
 from yarpy.data.value import Vocab
 from yarpy.errors import DecodeError, RemoteError
-from yarpy.kits.wrap.array import Picture
 from yarpy.kits.wrap.middleware import Failure, Item, Signature, Way
-from yarpy.kits.wrap.shape import ANY, Nothing, Record, Row, Scalar, Several, Shape, Wired
-from yarpy.kits.wrap.tree import from_text, to_text
+from yarpy.kits.wrap.value.array import Picture
+from yarpy.kits.wrap.value.shape import ANY, Nothing, Record, Row, Scalar, Several, Shape, Wired
+from yarpy.kits.wrap.value.tree import from_text, to_text
 from yarpy.peers.ros.message.convert.native import to_message, to_value
 from yarpy.peers.ros.message.message import Message as RosMessage
 from yarpy.peers.ros.message.model import ListOf, Primitive, Struct, Type

@@ -18,8 +18,8 @@ from typing import Any, Final
 
 from yarpy import fork
 from yarpy.log import logger
-from yarpy.peers.zenoh.alarm import CLOCK
 from yarpy.peers.zenoh.library import CALLS, WAKE
+from yarpy.peers.zenoh.tunnel.alarm import CLOCK
 
 log = logger("yarpy.ros2")
 

@@ -1,0 +1,1 @@
+"""Streams of bytes through Zenoh, where no TCP connection leads to a port."""
