@@ -12,7 +12,7 @@ import pytest
 import yarpy
 from yarpy.kits.wrap.value.array import Image
 from yarpy.kits.wrap.value.hint import shape_of
-from yarpy.kits.wrap.value.shape import NOT_NATIVE
+from yarpy.kits.wrap.value.native import NOT_NATIVE
 from yarpy.wire.message import DATA, Message, Packet
 
 

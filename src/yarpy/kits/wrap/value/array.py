@@ -12,7 +12,8 @@ from yarpy.data.python.array import NUMBERS, array_of, is_blob
 from yarpy.data.sig.image import Image as YarpImage
 from yarpy.data.sig.pixel import pixel_of
 from yarpy.errors import DecodeError
-from yarpy.kits.wrap.value.shape import NOT_NATIVE, Shape, shown
+from yarpy.kits.wrap.value.native import NOT_NATIVE
+from yarpy.kits.wrap.value.shape import Shape, shown
 from yarpy.limit import ARRAY_DIMENSIONS
 from yarpy.wire.message import Message
 

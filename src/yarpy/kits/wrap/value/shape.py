@@ -20,13 +20,9 @@ from typing import Any, Final
 from yarpy.data import codec
 from yarpy.data.bottle import Bottle
 from yarpy.errors import DecodeError
+from yarpy.kits.wrap.value.native import INT64, NOT_NATIVE, native_dict, native_list
 from yarpy.wire.message import Message
 
-NOT_NATIVE: Final = object()
-_INT64: Final = 1 << 63
-_SURE: Final = frozenset((str, float, bool, bytes))  # whatever their value, they come back
-_PLAIN: Final = _SURE | {int}
-_TEXT: Final = frozenset((str,))
 
 
 class Shape:
@@ -89,7 +85,7 @@ class Scalar(Shape):
     @staticmethod
     def native(plain: Any) -> Any:
         """A number that takes more than 64 bits is not native."""
-        if type(plain) is int and not -_INT64 <= plain < _INT64:
+        if type(plain) is int and not -INT64 <= plain < INT64:
             return NOT_NATIVE
         return plain
 
@@ -142,7 +138,7 @@ class Several(Shape):
             raise DecodeError(f"expected {self.name}: {error}") from error
 
     def native(self, plain: Any) -> Any:
-        return _native_list(plain if type(plain) is list else list(plain))
+        return native_list(plain if type(plain) is list else list(plain))
 
     def read(self, message: Message) -> Any:
         return message.as_(list)
@@ -166,7 +162,7 @@ class Row(Shape):
         return self._make([shape.load(item) for shape, item in zip(self.items, plain, strict=True)])
 
     def native(self, plain: Any) -> Any:
-        return _native_list(list(plain))
+        return native_list(list(plain))
 
     def read(self, message: Message) -> Any:
         return message.as_(list)
@@ -196,7 +192,7 @@ class Table(Shape):
         return {self.key.load(key): self.item.load(item) for key, item in plain.items()}
 
     def native(self, plain: Any) -> Any:
-        return _native_dict(plain)
+        return native_dict(plain)
 
     def read(self, message: Message) -> Any:
         return message.as_(dict)
@@ -243,7 +239,7 @@ class Record(Shape):
             raise DecodeError(f"expected {self.name}: {error}") from error
 
     def native(self, plain: Any) -> Any:
-        return _native_dict(plain)
+        return native_dict(plain)
 
     def read(self, message: Message) -> Any:
         return message.as_(dict)
@@ -386,61 +382,6 @@ class Foreign(Shape):
 
 ANY: Final = Shape()
 _SCALARS: Final = (bool, int, float, str, bytes)
-
-
-# ---------------------------------------------------------------------------- survival in YARP
-
-
-def survives(value: Any) -> bool:
-    """Return whether an element of a list comes back from YARP equal to what it was."""
-    kind = type(value)
-    if kind in _SURE:
-        return True
-    if kind is int:
-        return bool(-_INT64 <= value < _INT64)
-    if kind is list or kind is Bottle:
-        return _survive(value)
-    if kind is dict:  # a dict in a list has a kind of its own; one in that has not
-        return all(type(key) is str and _flat(item) for key, item in value.items())
-    return False
-
-
-def _survive(values: Iterable[Any]) -> bool:
-    """Return whether each of the values survives."""
-    for value in values:
-        kind = type(value)
-        if kind is int:
-            if not -_INT64 <= value < _INT64:
-                return False
-        elif kind not in _SURE and not survives(value):
-            return False
-    return True
-
-
-def _flat(value: Any) -> bool:
-    """The same for what has no dict in it."""
-    kind = type(value)
-    if kind is list or kind is Bottle:
-        return all(map(_flat, value))
-    return kind is not dict and survives(value)
-
-
-def _native_list(items: list[Any]) -> Any:
-    """A list; not one of a single text, which is how Wrapyfi sends everything."""
-    if len(items) == 1 and type(items[0]) is str:
-        return NOT_NATIVE
-    return items if _survive(items) else NOT_NATIVE
-
-
-def _native_dict(plain: Any) -> Any:
-    """A dict, as what a port writes: a list of pairs, since a dict in a dict would lose its
-    kind. With nothing in it that might need a description it is a Bottle, which is asked for
-    none."""
-    values = plain.values()
-    if not _TEXT.issuperset(map(type, plain)) or not _survive(values):
-        return NOT_NATIVE
-    pairs = map(list, plain.items())
-    return Bottle(pairs) if _PLAIN.issuperset(map(type, values)) else [*pairs]
 
 
 def shown(value: Any) -> str:

@@ -21,7 +21,8 @@ from yarpy.errors import DecodeError
 from yarpy.kits.wrap.middleware import Failure, Item, Received
 from yarpy.kits.wrap.value import frame
 from yarpy.kits.wrap.value.array import Picture
-from yarpy.kits.wrap.value.shape import NOT_NATIVE, Scalar, Shape, survives
+from yarpy.kits.wrap.value.native import NOT_NATIVE, survives
+from yarpy.kits.wrap.value.shape import Scalar, Shape
 from yarpy.kits.wrap.value.tree import Jpeg, from_text, to_text
 from yarpy.wire.message import Message
 
