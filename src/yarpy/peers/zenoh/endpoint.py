@@ -28,7 +28,7 @@ from yarpy.peers.zenoh.carrier import (
 )
 from yarpy.peers.zenoh.library import CALLS, WAKE, load
 from yarpy.peers.zenoh.transport import SharedSession
-from yarpy.peers.zenoh.tunnel.exchange import undeclare
+from yarpy.peers.zenoh.tunnel.line import undeclare
 from yarpy.route import CarrierSpec, parse_carrier
 from yarpy.transports.inbox import Inbox
 

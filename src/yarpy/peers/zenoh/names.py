@@ -35,7 +35,8 @@ from yarpy.peers.zenoh.library import CALLS, load
 from yarpy.peers.zenoh.place import SETTING, place
 from yarpy.peers.zenoh.reachability import ANYWHERE, Reachability, machine
 from yarpy.peers.zenoh.transport import SharedSession, share
-from yarpy.peers.zenoh.tunnel.exchange import Exchange, Welcome, join, know, leave, undeclare
+from yarpy.peers.zenoh.tunnel.exchange import Exchange, Welcome, join, know, leave
+from yarpy.peers.zenoh.tunnel.line import undeclare
 from yarpy.transports.bind import listening_host
 
 if TYPE_CHECKING:

@@ -13,16 +13,14 @@ equal, whatever the hint; a frame carries the rest.
 from __future__ import annotations
 
 import enum
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from datetime import datetime
 from typing import Any, Final
 
 from yarpy.data import codec
-from yarpy.data.bottle import Bottle
 from yarpy.errors import DecodeError
 from yarpy.kits.wrap.value.native import INT64, NOT_NATIVE, native_dict, native_list
 from yarpy.wire.message import Message
-
 
 
 class Shape:
