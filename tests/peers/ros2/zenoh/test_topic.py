@@ -1,5 +1,7 @@
 """Topics of a program."""
 
+import threading
+from concurrent.futures import ThreadPoolExecutor
 from typing import Any
 
 import pytest
@@ -31,6 +33,23 @@ def test_subscriptions_are_counted(names: yarpy.LocalNames) -> None:
         wait_until(lambda: out.subscribers == 2)
         hearer.close()
         wait_until(lambda: out.subscribers == 1)
+
+
+def test_a_publisher_is_closed_while_others_write(names: yarpy.LocalNames) -> None:
+    with ros2.Node("/a") as a:
+        for _ in range(5):
+            out = a.publisher("/large", "std_msgs/msg/UInt8MultiArray")
+            value, begun = out.kind(data=bytes(2_000_000)), threading.Event()
+
+            def write(out: Any = out, value: Any = value, begun: Any = begun) -> None:
+                for _ in range(10):
+                    out.write(value), begun.set()
+
+            with ThreadPoolExecutor() as pool:
+                writes = pool.submit(write)
+                assert begun.wait(HANG)
+                out.close()
+                writes.result(HANG)  # what is written to a closed one is for nobody
 
 
 def test_who_comes_late_gets_what_was_kept(names: yarpy.LocalNames) -> None:

@@ -7,6 +7,7 @@ counted.
 
 from __future__ import annotations
 
+import threading
 import time
 from collections.abc import Callable
 from typing import Any
@@ -22,7 +23,7 @@ from yarpy.peers.ros2.qos import Qos
 from yarpy.peers.ros2.zenoh.endpoint import Publisher
 from yarpy.peers.ros2.zenoh.participant import take_part
 from yarpy.peers.ros2.zenoh.service import begun
-from yarpy.peers.ros2.zenoh.subscriber import Subscriber
+from yarpy.peers.ros2.zenoh.subscriber import HURRY, Subscriber
 from yarpy.wire.message import Packet
 
 log = logger("yarpy.ros2")
@@ -37,6 +38,7 @@ class Writer(Publisher):
         self, node: Node, domain: int, name: str, type_: str, qos: Qos | None = None
     ) -> None:
         super().__init__(take_part(domain), str(node), node, name, qos)
+        self._writing = threading.Lock()  # what is being published cannot be taken back
         begun(self, type_)
 
     @property
@@ -50,11 +52,21 @@ class Writer(Publisher):
         present one. Raises TypeError, ValueError, DecodeError for what is nothing of the type."""
         body = encode_body(Packet(value), self.kind, self.now)
         try:
-            if not self.ended():
-                self.give(Outgoing(self.kind, body))
+            with self._writing:
+                if not self.ended():
+                    self.give(Outgoing(self.kind, body))
         except Exception:
             if not self.ended():  # it was closed meanwhile
                 raise
+
+    def close(self) -> None:
+        """Idempotent."""
+        alone = self._writing.acquire(timeout=HURRY)
+        try:
+            super().close()
+        finally:
+            if alone:
+                self._writing.release()
 
 
 class Reader(Subscriber):
