@@ -161,6 +161,26 @@ def test_a_person_looks_connects_and_undoes(
         page.get_by_role("heading", name=EVIL).wait_for()
 
 
+def test_what_a_pointer_holds_stays_under_it(browser: Browser, url: str, out: yarpy.Port) -> None:
+    """Ports come and go meanwhile; the picture is drawn anew when it is let go."""
+    page = browser.open(url)
+    page.get_by_text(re.compile("3 ports")).wait_for()
+    places = "JSON.stringify([...dash.graph.map.at].map(([name, {x, y}]) => [name, x, y]))"
+    before, view = page.evaluate(places), page.evaluate("dash.graph.view")
+    box = page.locator("#graph").bounding_box()
+    assert box is not None
+    page.mouse.move(box["x"] + 5, box["y"] + 5)
+    page.mouse.down()
+    with yarpy.Port("/aaa/comes", names=out._hub.names):
+        page.get_by_text(re.compile("4 ports")).wait_for()
+        assert page.evaluate(places) == before and page.evaluate("dash.graph.view") == view
+        page.mouse.move(box["x"] + 45, box["y"] + 25)
+        assert page.evaluate("dash.graph.view.x") == view["x"] + 40
+        assert page.evaluate(places) == before
+        page.mouse.up()
+        assert page.evaluate("dash.graph.map.at.has('/aaa/comes')")
+
+
 def test_a_thousand_ports(browser: Browser, names: yarpy.LocalNames) -> None:
     """That it is fast enough is measured by bench/dash.py; here it has to be right."""
     with yarpy.Port("/dash", names=names) as port:

@@ -276,6 +276,30 @@ def test_clicks(browser: Browser) -> None:
                 assert json.load(response)[0] == "fail"
 
 
+def test_a_picture_stays_where_it_is_while_a_pointer_is_down(browser: Browser) -> None:
+    """What is told beside it, of other lengths, would move it under the pointer."""
+    with room(browser, "/one") as here, yarpy.BufferedPort("/out", names=here.names) as out:
+        Viewer(here.pictures, clicks=[out])
+        page = browser.open(here.url)
+        here.cameras[0].write(plain(RED, 100, 50))
+        shows(page, RED)
+        page.wait_for_selector("canvas.clicks")
+        box = page.locator("canvas").first.bounding_box()
+        assert box is not None
+        page.mouse.move(box["x"] + box["width"] / 2, box["y"] + box["height"] / 2)
+        page.mouse.down()
+        told = page.locator(".facts").first.text_content()
+        with yarpy.Port("/another/camera", names=here.names) as other:
+            other.connect(here.ports[0].name)
+            for _ in range(3):  # the last of which was asked for behind that
+                with page.expect_response("**/status"):
+                    pass
+            assert page.locator(".facts").first.text_content() == told
+            assert page.locator("canvas").first.bounding_box() == box
+            page.mouse.up()
+            reads(page, ".facts", "/another/camera")
+
+
 def test_a_stalled_browser_costs_nothing(browser: Browser) -> None:
     noise = yarpy.Image(np.random.default_rng(1).integers(0, 255, (480, 640, 3), "u1"))
     with room(browser, "/view") as here, socket.socket() as stalled:

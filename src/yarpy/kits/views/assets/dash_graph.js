@@ -26,6 +26,7 @@ export class Graph {
     this.view = {x: 0, y: 0, zoom: 1};
     this.moved = false; // by a person: it stays as it is
     this.pointers = new Map();
+    this.later = null; // ports to arrange when no pointer is down
     this.due = false;
     new ResizeObserver(() => this.resize()).observe(canvas);
     matchMedia("(prefers-color-scheme: dark)").addEventListener("change", () => this.paint());
@@ -33,8 +34,10 @@ export class Graph {
     this.paint();
   }
 
-  // The ports and connections are others.
+  // The ports and connections are others. What a pointer holds stays under it.
   arrange(ports, links) {
+    this.later = this.pointers.size ? ports : null;
+    if (this.later) return this.update(links);
     this.map = layout(ports, links);
     if (!this.moved) this.fit();
     this.update(links);
@@ -62,7 +65,7 @@ export class Graph {
     this.scale = window.devicePixelRatio || 1;
     this.canvas.width = Math.round(clientWidth * this.scale);
     this.canvas.height = Math.round(clientHeight * this.scale);
-    if (!this.moved) this.fit();
+    if (!this.moved && !this.pointers.size) this.fit();
     this.draw();
   }
 
@@ -236,6 +239,7 @@ export class Graph {
     const up = (event) => {
       this.pointers.delete(event.pointerId);
       if (event.type === "pointerup" && this.still && !this.pointers.size) this.click(event.offsetX, event.offsetY);
+      if (this.later && !this.pointers.size) this.arrange(this.later, this.links);
     };
     canvas.addEventListener("pointerup", up);
     canvas.addEventListener("pointercancel", up);

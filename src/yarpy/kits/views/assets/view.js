@@ -97,8 +97,10 @@ class Picture {
     let start = null;
     this.canvas.onpointerdown = (event) => {
       start = event.button === 0 && this.info.clicks && acts ? this.live.place(event) : null;
-      if (start) this.canvas.setPointerCapture(event.pointerId);
+      held = start !== null;
+      if (held) this.canvas.setPointerCapture(event.pointerId);
     };
+    this.canvas.onlostpointercapture = () => (held = false);
     this.canvas.onpointerup = (event) => {
       const end = this.live.place(event);
       if (!start || !end) return;
@@ -117,10 +119,12 @@ class Picture {
 // -- the page --
 
 const pictures = [];
+let held = false; // a pointer is down on a picture, which stays where it is: text may move it
 const acts = (await may()).includes("write"); // whether clicks may be sent
 
 async function tell() {
   const status = await ask("/status");
+  if (held) return;
   const state = document.getElementById("state");
   if (status === null) {
     say(state, "the program does not answer");
