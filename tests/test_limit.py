@@ -142,6 +142,7 @@ OWN = {
     "peers/ros/message/source.py": "folders of the owner",
     "peers/ros/message/show.py": "lines that are printed",
     "peers/ros2/name.py": "the length of a name in DDS",
+    "peers/ros2/zenoh/firsts.py": "publishers, not what is read of them",
     "peers/ros2/zenoh/graph.py": "what a router tells, not what is read of it",
     "peers/zenoh/tunnel/gateway.py": "connections, not what is read of them",
     "peers/zenoh/tunnel/exchange.py": "connections, not what is read of them",
