@@ -159,6 +159,7 @@ def test_a_router_that_stays_stopped_does_not_hold_up_the_end(
     shared = share(where)
     session = shared.session
     router.send_signal(signal.SIGSTOP)
+    os.waitpid(router.pid, os.WUNTRACED)  # it has stopped: it can answer no more
     shared.close()
     assert session.is_closed()
     assert "Zenoh's router may not have taken all: no answer in 0.2 s" in caplog.text
