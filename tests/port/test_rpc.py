@@ -11,6 +11,7 @@ from typing import Any
 from urllib.request import urlopen
 
 import pytest
+from support.build import replaces_a_method
 from support.guest import guest
 from support.wait import HANG, wait_until
 
@@ -140,7 +141,9 @@ def test_a_question_that_waits_for_its_turn_is_not_answered_by_an_interrupted_se
 
 
 @pytest.mark.parametrize("carrier", ["tcp", "memory"])
-@pytest.mark.parametrize("how", ["waits", "was read from the socket"])
+@pytest.mark.parametrize(
+    "how", ["waits", pytest.param("was read from the socket", marks=replaces_a_method)]
+)
 def test_a_question_that_an_interrupted_port_drops_is_no_empty_answer(
     how: str, carrier: str, names: LocalNames, monkeypatch: pytest.MonkeyPatch
 ) -> None:
