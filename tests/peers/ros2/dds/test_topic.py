@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
+import threading
 from typing import Any
 
-from support.wait import wait_until
+from support.wait import HANG, wait_until
 
 from yarpy.peers import ros2
 
@@ -32,3 +33,19 @@ def test_topics(here: None, own: str) -> None:
         wait_until(lambda: writer.subscribers == 0)
         writer.close()
         assert writer.subscribers == 0
+
+
+def test_a_signal_handler_closes_in_the_middle_of_a_write(here: None, own: str) -> None:
+    with ros2.Node(own, rmw="dds") as node:
+        out: Any = node.publisher(f"{own}/cut", "std_msgs/msg/String")
+        give = out.give
+
+        def interrupted(item: Any) -> None:
+            out.close()
+            give(item)
+
+        out.give = interrupted
+        writes = threading.Thread(target=out.write, args=("cut off",), daemon=True)
+        writes.start()
+        writes.join(HANG)
+        assert not writes.is_alive() and out.ended()

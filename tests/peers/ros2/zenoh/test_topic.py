@@ -78,3 +78,19 @@ def test_bytes_that_are_no_message(
         count = len(heard)
         wait_until(lambda: out.write("next") or len(heard) > count)
     assert "is lost" in caplog.text
+
+
+def test_a_signal_handler_closes_in_the_middle_of_a_write(names: yarpy.LocalNames) -> None:
+    with ros2.Node("/a") as node:
+        out: Any = node.publisher("/cut", "std_msgs/msg/String")
+        give = out.give
+
+        def interrupted(item: Any) -> None:
+            out.close()
+            give(item)
+
+        out.give = interrupted
+        writes = threading.Thread(target=out.write, args=("cut off",), daemon=True)
+        writes.start()
+        writes.join(HANG)
+        assert not writes.is_alive() and out.ended()

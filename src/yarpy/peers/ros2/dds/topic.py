@@ -36,7 +36,8 @@ class DdsWriter(DdsPublisher):
         self, node: Node, domain: int, name: str, type_: str, qos: Qos | None = None
     ) -> None:
         super().__init__(domain, str(node), node, name, qos, PUBLISHER)
-        self._writing = threading.Lock()  # one writer may take over from another
+        # One writer may take over from another; a signal handler may close in the middle.
+        self._writing = threading.RLock()
         begun(self, type_)
 
     @property
@@ -53,8 +54,12 @@ class DdsWriter(DdsPublisher):
         TypeError, ValueError, DecodeError for what is nothing of the type."""
         body = encode_body(Packet(value), self.kind, self.now)
         with self._writing:
-            if not self._over:
-                self.give(Outgoing(self.kind, body))
+            try:
+                if not self._over:
+                    self.give(Outgoing(self.kind, body))
+            except Exception:
+                if not self._over:
+                    raise
 
     def close(self) -> None:
         """Idempotent."""

@@ -23,7 +23,7 @@ from yarpy.peers.ros2.qos import Qos
 from yarpy.peers.ros2.zenoh.endpoint import Publisher
 from yarpy.peers.ros2.zenoh.participant import take_part
 from yarpy.peers.ros2.zenoh.service import begun
-from yarpy.peers.ros2.zenoh.subscriber import HURRY, Subscriber
+from yarpy.peers.ros2.zenoh.subscriber import Subscriber
 from yarpy.wire.message import Packet
 
 log = logger("yarpy.ros2")
@@ -38,7 +38,8 @@ class Writer(Publisher):
         self, node: Node, domain: int, name: str, type_: str, qos: Qos | None = None
     ) -> None:
         super().__init__(take_part(domain), str(node), node, name, qos)
-        self._writing = threading.Lock()  # what is being published cannot be taken back
+        # What is being published cannot be taken back; a signal handler may do so in the middle.
+        self._writing = threading.RLock()
         begun(self, type_)
 
     @property
@@ -61,12 +62,8 @@ class Writer(Publisher):
 
     def close(self) -> None:
         """Idempotent."""
-        alone = self._writing.acquire(timeout=HURRY)
-        try:
+        with self._writing:
             super().close()
-        finally:
-            if alone:
-                self._writing.release()
 
 
 class Reader(Subscriber):
