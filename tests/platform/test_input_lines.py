@@ -9,9 +9,8 @@ import sys
 from collections.abc import Iterator
 
 import pytest
-from support.wait import inside
+from support.main_signal import signalled
 
-from yarpy.cli.signals import _wake_main_thread
 from yarpy.platform.input_lines import AHEAD, lines
 
 
@@ -63,17 +62,11 @@ def test_a_signal_ends_the_wait_for_a_line(number: str, pipe: io.TextIOWrapper) 
     if not hasattr(signal, number):
         pytest.skip(f"{sys.platform} has no {number}")
 
-    def asked(*_: object) -> None:
+    def asked() -> None:
         raise Asked
 
-    before = signal.signal(getattr(signal, number), asked)
     found = lines()
     pipe.write("one\n")
     assert next(found) == "one\n"
-    thread = inside("lines", lambda: _wake_main_thread(getattr(signal, number)))
-    try:
-        with pytest.raises(Asked):
-            next(found)
-    finally:
-        thread.join()
-        signal.signal(getattr(signal, number), before)
+    with signalled("lines", getattr(signal, number), asked), pytest.raises(Asked):
+        next(found)

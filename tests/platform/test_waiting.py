@@ -10,9 +10,9 @@ from _thread import allocate_lock
 
 import pytest
 from support.cut import cut_at
+from support.main_signal import signalled
 from support.wait import HANG, inside
 
-from yarpy.cli.signals import _wake_main_thread
 from yarpy.platform import waiting
 
 
@@ -45,19 +45,13 @@ def test_a_signal_ends_it(number: str, what: str) -> None:
     if not hasattr(signal, number):
         pytest.skip(f"{sys.platform} has no {number}")
 
-    def asked(*_: object) -> None:
+    def asked() -> None:
         raise Asked
 
-    before = signal.signal(getattr(signal, number), asked)
     lock = allocate_lock()
     lock.acquire()
-    thread = inside(what, lambda: _wake_main_thread(getattr(signal, number)))
-    try:
-        with pytest.raises(Asked):
-            waiting.acquire(lock) if what == "acquire" else waiting.wait()
-    finally:
-        thread.join()
-        signal.signal(getattr(signal, number), before)
+    with signalled(what, getattr(signal, number), asked), pytest.raises(Asked):
+        waiting.acquire(lock) if what == "acquire" else waiting.wait()
 
 
 def test_an_exception_at_any_place_of_it_comes_out_as_it_is() -> None:
@@ -88,14 +82,6 @@ def test_the_handler_of_a_signal_may_set_an_event(number: str) -> None:
     if not hasattr(signal, number):
         pytest.skip(f"{sys.platform} has no {number}")
     event = threading.Event()
-
-    def asked(*_: object) -> None:
-        threading.Thread(target=event.set).start()
-
-    before = signal.signal(getattr(signal, number), asked)
-    thread = inside("happens", lambda: _wake_main_thread(getattr(signal, number)))
-    try:
+    asked = threading.Thread(target=event.set).start
+    with signalled("happens", getattr(signal, number), asked):
         assert waiting.happens(event, HANG)
-    finally:
-        thread.join()
-        signal.signal(getattr(signal, number), before)

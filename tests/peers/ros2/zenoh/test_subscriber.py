@@ -12,6 +12,7 @@ from concurrent.futures import ThreadPoolExecutor
 from typing import Any
 
 import pytest
+from support.main_signal import signalled
 from support.wait import HANG, runs, wait_until
 
 import yarpy
@@ -240,24 +241,12 @@ def test_a_signal_handler_ends_the_wait_of_the_main_thread(make: Make) -> None:
     class Enough(Exception):
         pass
 
-    def handler(number: int, frame: object) -> None:
+    def handler() -> None:
         raise Enough
 
-    reader, main = make(), threading.main_thread().ident or 0
-
-    def send() -> None:
-        wait_until(lambda: runs(WAITS, main))
-        signal.pthread_kill(main, signal.SIGUSR1)
-
-    before = signal.signal(signal.SIGUSR1, handler)
-    sender = threading.Thread(target=send)
-    sender.start()
-    try:
-        with pytest.raises(Enough):
-            reader.receive()
-    finally:
-        sender.join()
-        signal.signal(signal.SIGUSR1, before)
+    reader = make()
+    with signalled(WAITS, signal.SIGUSR1, handler), pytest.raises(Enough):
+        reader.receive()
     put(reader.participant, 1)
     assert came(reader) == 1
 
