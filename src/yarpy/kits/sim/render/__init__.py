@@ -1,1 +1,1 @@
-"""What a camera of the simulated robot sees: a scene, its textures, and the pixels."""
+"""Pictures of the simulated robot's cameras: a scene, its textures, and the pixels."""

@@ -1,4 +1,4 @@
-"""What a port writes as it is, because YARP brings it back equal: native values.
+"""Native values: a port writes them as they are, because YARP brings them back equal.
 
 Rules: what is not native (NOT_NATIVE) travels in a frame. Whole numbers beyond 64 bits, None, keys
 that are no texts and dicts in dicts are not.
