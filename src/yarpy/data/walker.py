@@ -132,7 +132,7 @@ class Walker:
         code, count = _read_pair(view, 0)
         kind = code & UNIT_MASK
         width = self._widths.get(kind, 4 if kind in (STRING, BLOB) or kind in ONLY_4 else 0)
-        if kind and not width:  # no Bottle has such a code
+        if kind and not width and count:  # no Bottle has such elements
             return _HEAD if size < 12 or may_be_cloud(view) else 0
         if kind == 0 and size >= 12 and not self._is_tag(_read_i32(view, 8)[0]):
             return _HEAD if may_be_cloud(view) else 0
