@@ -92,6 +92,7 @@ def _joined(
     way = f'"{masked(source)}" -> "{masked(target)}" over {pairing.spec}'
     error = refusal.error(text, way)
     if isinstance(error, LinkClosed):
+        pairing.confirm_other(names or DEFAULT.current())
         try:
             find_carrier(pairing.spec)
         except UnknownPlugin as unheard:  # so it may be a typing error

@@ -106,18 +106,42 @@ class Pairing:
 
     def confirm(self, names: NameClient) -> None:
         """Make sure that the ports of these names listen where they are registered, before one of
-        them sends to the other. Raises WrongPort if another port does."""
-        for contact in (self.here, self.there):
-            self._confirm(contact, names)
+        them sends to the other. Raises WrongPort if another port does.
 
-    def _confirm(self, contact: Contact, names: NameClient) -> None:
+        A port of yarpy that is to dial the other one looks at it itself, so nobody does so twice.
+        """
+        reached = self._confirm(self.asked, names)
+        if not (reached and self._looks_itself()):
+            self._confirm(self._other, names)
+
+    def confirm_other(self, names: NameClient) -> None:
+        """Raise WrongPort if that is why the port in charge could not dial the other one."""
+        self._confirm(self._other, names)
+
+    @property
+    def _other(self) -> Contact:
+        return self.here if self.asked is self.there else self.there
+
+    def _confirm(self, contact: Contact, names: NameClient) -> bool:
+        """Return whether it could be asked, if it had to be."""
         try:
             if contact is not self.asked:
                 identity.confirm(contact, names.get, secret(), _CONFIRMING)
-            elif contact.name and contact.carrier in ("", "tcp"):
+            elif identity.has_to_be_asked(contact):
                 identity.judge(contact, self._visited().name(), names.get)
         except (LinkClosed, Timeout, RemoteProtocolError):
-            pass  # perhaps it can be reached from the other one, if not from here
+            return False  # perhaps it can be reached from the other one, if not from here
+        return True
+
+    def _looks_itself(self) -> bool:
+        """Return whether the port in charge is of yarpy, if it matters."""
+        if not identity.has_to_be_asked(self._other):
+            return True
+        try:
+            reply = self.admin(Vocab("stat"), Vocab("in"), "?")
+        except LinkClosed:
+            return False
+        return not reply or reply[0] != Vocab("fail")
 
     def _visited(self) -> probe.AdminConnection:
         if self._visit is None:

@@ -37,7 +37,7 @@ def confirm(
 
     Raises WrongPort (another port), LinkClosed (nobody listens), Timeout (it is silent).
     """
-    if not contact.name or contact.carrier not in ("", "tcp"):
+    if not has_to_be_asked(contact):
         return probe.Listener()
     try:
         found = probe.introduce(contact, timeout or TIMEOUT, key, secure)
@@ -47,6 +47,11 @@ def confirm(
         raise
     judge(contact, found.name, properties)
     return found
+
+
+def has_to_be_asked(contact: Contact) -> bool:
+    """Return whether a name led to this address, so that another port may listen there by now."""
+    return bool(contact.name) and contact.carrier in ("", "tcp")
 
 
 def judge(contact: Contact, found: str, properties: Properties | None) -> None:
