@@ -15,7 +15,7 @@ from support.timer import beating
 from support.tls import prepare
 
 from yarpy.config.authority import make
-from yarpy.transports.tls import NoCertificate, TlsTransport, explained, secured
+from yarpy.transports.tls import NoCertificate, TlsTransport, client_context, explained, secured
 
 SOON = 20.0
 
@@ -244,3 +244,15 @@ def test_what_finds_no_room_is_left_and_nothing_changes_places(
     thread.join(SOON)
     assert near.try_send([b"more"]) == []
     assert read(far, 4) == b"more"
+
+
+def test_nobody_has_to_close_a_connection_to_a_name_server(
+    folder: Path, recwarn: pytest.WarningsRecorder
+) -> None:
+    ours, theirs = socket.socketpair()
+    with theirs:
+        secure = client_context().wrap_socket(
+            ours, server_hostname="robot", do_handshake_on_connect=False
+        )
+        del secure, ours
+        assert theirs.recv(1) == b"" and not recwarn.list

@@ -35,7 +35,7 @@ from yarpy.errors import (
 )
 from yarpy.names.base import Contacts, Strings, Values
 from yarpy.names.idle_lines import IdleLines
-from yarpy.names.line import Gone, Line, acknowledged, old_style
+from yarpy.names.line import Gone, Line, LineSocket, acknowledged, old_style
 from yarpy.names.registration_line import END, parse_registration
 from yarpy.transports.peer_timeout import notice_death
 from yarpy.transports.tcp import connected
@@ -274,7 +274,7 @@ class YarpNameClient:
         if until is None:
             until = time.monotonic() + self._time_limit()
         try:
-            connection = connected(self.host, self.port, until - time.monotonic())
+            connection = connected(self.host, self.port, until - time.monotonic(), LineSocket)
         except (Timeout, PortClosed):
             raise
         except (OSError, AddressError) as error:

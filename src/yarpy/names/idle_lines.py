@@ -2,7 +2,8 @@
 
 Rules: a connection is lent to one command at a time. The lock guards the list alone and is never
 held across I/O. What has waited for more than IDLE seconds may be dead, and what a forked process
-shares with its parent would mix their replies: both are closed, not lent.
+shares with its parent would mix their replies: both are closed, not lent. Those of a client that is
+dropped close by themselves.
 """
 
 from __future__ import annotations
@@ -62,8 +63,4 @@ class IdleLines:
         with self._lock:
             lines, self._lines = self._lines, []
         for line in lines:
-            line.close()
-
-    def __del__(self) -> None:
-        for line in self._lines:  # kept for speed; nobody has to think of closing them
             line.close()

@@ -27,6 +27,14 @@ _ACK: Final = "<ACK>"
 SLICE: Final[float | None] = 0.25 if sys.platform == "win32" else None  # seconds
 
 
+class LineSocket(socket.socket):
+    """A socket that nobody has to close: it is kept for the next command of a client that may just
+    be dropped. One of the library complains of that, even where it is dropped with an object that
+    would close it."""
+
+    __del__ = socket.socket.close
+
+
 class Gone(Exception):
     """The connection ended before a reply; a new one may do better."""
 

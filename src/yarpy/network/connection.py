@@ -18,7 +18,7 @@ from yarpy.link.begin.handshake import find_carrier
 from yarpy.names.base import NameClient
 from yarpy.names.default import DEFAULT
 from yarpy.network.asking import ask_server, confirmed
-from yarpy.network.pairing import Pairing, written
+from yarpy.network.pairing import Pairing, existing, written
 from yarpy.port.connect import probe, refusal
 from yarpy.port.connect.choosing import offers_memory
 from yarpy.route import masked
@@ -139,8 +139,7 @@ def is_connected(
 
 def _is_connected(source: str, target: str, carrier: str, names: NameClient | None) -> bool:
     try:
-        with Pairing(source, target, "", names) as pairing:
-            found = pairing.existing()
+        found = existing(source, target, names)
     except (UnknownName, LinkClosed, Timeout):
         return False
     return bool(found) and (not carrier or masked(carrier) == found)

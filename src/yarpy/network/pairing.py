@@ -40,6 +40,8 @@ class Pairing:
 
     def __init__(self, source: str, target: str, carrier: str, names: NameClient | None) -> None:
         self.source_text, self.target_text = source, target
+        # for all questions to the port in charge
+        self._visit: probe.AdminConnection | None = None
         from_, to = _end(source, "source"), _end(target, "destination")
         self.topical = "topic" in (from_.carrier, to.carrier)
         self.source, self.target = from_, to
@@ -78,7 +80,6 @@ class Pairing:
         if facts.reaches.same_program:
             self._check_one_program(names or DEFAULT.current())
         self.asked = asked
-        self._visit: probe.AdminConnection | None = None  # for all questions to that port
         self.peer = (from_ if self.pull else to).label
         # Perhaps a camera, which does not understand us: ask its receiver first.
         self.plain = from_.reachable and not from_.name and not self.pull
@@ -150,13 +151,9 @@ class Pairing:
 
     def close(self) -> None:
         """Hang up, if somebody was asked."""
-        visit = getattr(self, "_visit", None)
+        visit, self._visit = self._visit, None
         if visit is not None:
-            self._visit = None
             visit.close()
-
-    def __del__(self) -> None:
-        self.close()
 
     def __enter__(self) -> Self:
         return self
@@ -203,6 +200,13 @@ class Pairing:
             return probe.ask(self.there, [*words, self.source.label])
         except (LinkClosed, Timeout, RemoteProtocolError):
             return Bottle()
+
+
+def existing(source: str, target: str, names: NameClient | None = None) -> str:
+    """Return the carrier of the connection between these ends; "" if there is none. Raises as
+    Pairing."""
+    with Pairing(source, target, "", names) as pairing:
+        return pairing.existing()
 
 
 def _done(reply: Bottle) -> bool:

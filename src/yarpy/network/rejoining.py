@@ -15,7 +15,7 @@ from yarpy.errors import UnknownName, YarpError
 from yarpy.log import logger
 from yarpy.names.base import NameClient
 from yarpy.network.connection import disconnect, join
-from yarpy.network.pairing import Pairing
+from yarpy.network.pairing import Pairing, existing
 from yarpy.network.qos import grant, granted
 from yarpy.qos import Qos
 
@@ -34,13 +34,15 @@ def rejoin(
     that it has; where that is refused it goes on over `before`. One that was dialled by address
     goes by the name then. Raises like `connection.join`."""
     had = settings(source, target, names)
-    if Pairing(source, target, "", names).dialled():
+    with Pairing(source, target, "", names) as pairing:
+        by_address = pairing.dialled()
+    if by_address:
         disconnect(source, target, names=names)  # by name it would be a second one
     try:
         join(source, target, carrier, names=names)
     except YarpError:
         with suppress(YarpError):
-            if before and not Pairing(source, target, "", names).existing():
+            if before and not existing(source, target, names):
                 join(source, target, before, names=names)
                 give_back(source, target, had, names)
         raise

@@ -101,9 +101,11 @@ def dial(host: str, port: int, timeout: float = CONNECT_TIMEOUT) -> TcpTransport
     return TcpTransport(connected(host, port, timeout))
 
 
-def connected(host: str, port: int, timeout: float) -> socket.socket:
-    """Return a socket that is connected to `host`:`port`. All of it, the look-up of a name
-    included, takes `timeout` seconds at most, and ends with the call under way (`scope`).
+def connected(
+    host: str, port: int, timeout: float, make: type[socket.socket] = socket.socket
+) -> socket.socket:
+    """Return a socket, of class `make`, that is connected to `host`:`port`. All of it, the look-up
+    of a name included, takes `timeout` seconds at most, and ends with the call under way (`scope`).
 
     Raises OSError (TimeoutError, ConnectionRefusedError ...), AddressError.
     """
@@ -115,7 +117,7 @@ def connected(host: str, port: int, timeout: float) -> socket.socket:
         if left <= 0.0:
             break
         try:
-            sock = socket.socket(family, kind, protocol)
+            sock = make(family, kind, protocol)
         except OSError as error:  # of a family that this system does not have
             failure = error
             continue

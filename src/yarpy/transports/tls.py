@@ -341,6 +341,12 @@ def _server(where: Path, wish: ssl.VerifyMode, age: tuple[float, ...]) -> ssl.SS
     return context
 
 
+class _LineSocket(ssl.SSLSocket):
+    """As that of `names.line`, in TLS."""
+
+    __del__ = ssl.SSLSocket.close
+
+
 @lru_cache(maxsize=8)
 def _client(where: Path, age: tuple[float, ...]) -> ssl.SSLContext:
     authority = str(where / "ca.pem") if age[2] else None
@@ -349,6 +355,7 @@ def _client(where: Path, age: tuple[float, ...]) -> ssl.SSLContext:
     except OSError as error:
         raise NoCertificate(f"{authority} cannot be used: {error}") from error
     context.minimum_version = ssl.TLSVersion.TLSv1_3
+    context.sslsocket_class = _LineSocket
     _own(context, where, age)
     return context
 

@@ -108,8 +108,8 @@ def _existing(source: str, target: str, carrier: str | None) -> str:
     from yarpy.network.pairing import Pairing
 
     try:
-        pairing = Pairing(source, target, carrier or "", None)
-        return "" if pairing.topical else pairing.existing()
+        with Pairing(source, target, carrier or "", None) as pairing:
+            return "" if pairing.topical else pairing.existing()
     except yarpy.YarpError:
         return ""  # connecting will say it
 

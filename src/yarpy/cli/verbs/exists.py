@@ -36,9 +36,9 @@ def command(port: str, target: str | None, as_json: bool) -> int:
 def _carrier(port: str, target: str) -> str:
     """Return the carrier that connects the two, "" if they are not connected."""
     from yarpy.errors import LinkClosed, Timeout, UnknownName
-    from yarpy.network.pairing import Pairing
+    from yarpy.network.pairing import existing
 
     try:
-        return Pairing(port, target, "", None).existing()
+        return existing(port, target)
     except (UnknownName, LinkClosed, Timeout):
         return ""

@@ -13,7 +13,7 @@ from typing import Final
 import yarpy
 from yarpy.names.base import NameClient
 from yarpy.network import connection, qos
-from yarpy.network.pairing import Pairing
+from yarpy.network.pairing import existing
 from yarpy.network.rejoining import give_back, rejoin, settings
 
 KEPT: Final = 100  # things that can be taken back
@@ -54,7 +54,7 @@ class Actions:
         raise yarpy.LocalProtocolError("a page of another version: load it again")
 
     def _connect(self, source: str, target: str, carrier: str) -> str:
-        before = Pairing(source, target, "", self._names).existing()
+        before = existing(source, target, self._names)
         if before:
             return self._change(source, target, carrier or before)
         found, _ = connection.join(source, target, carrier, names=self._names)
@@ -88,7 +88,7 @@ class Actions:
         return f"{source} → {target} is over {carrier} now"
 
     def _carrier(self, source: str, target: str) -> str:
-        found = Pairing(source, target, "", self._names).existing()
+        found = existing(source, target, self._names)
         if not found:
             raise yarpy.UnknownName(f"{source} → {target} is no connection any more")
         return found
