@@ -3,9 +3,11 @@
 from __future__ import annotations
 
 import socket
+import sys
 import threading
 from collections.abc import Iterator
 from contextlib import suppress
+from typing import Any
 
 import pytest
 from support.cpp import CppYarp
@@ -14,8 +16,12 @@ from support.peer import brings
 from support.wait import HANG, wait_until
 
 import yarpy
+from yarpy.carriers.base import Carrier
 from yarpy.data.value import Vocab
 from yarpy.errors import AccessRefused, LinkClosed, RemoteProtocolError, Timeout, UnknownName
+from yarpy.link.begin.handshake import greet
+from yarpy.link.driver import Driver
+from yarpy.network import sampling
 from yarpy.network.sampling import Sampler, ends, flow, flows, state_of
 from yarpy.network.traffic import Flow
 
@@ -178,6 +184,28 @@ def test_a_liar_about_others_is_passed_over(names: yarpy.LocalNames) -> None:
         )
         [found] = flows(names)
         assert (found.source, found.target, found.measured("messages")) == ("/liar", "/y", None)
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="Windows marks no packets for a program")
+def test_a_line_that_cannot_be_made_urgent_is_closed(
+    names: yarpy.LocalNames, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    made: list[Driver] = []
+
+    def greeted(*arguments: Any, **options: Any) -> tuple[Driver, Carrier]:
+        driver, carrier = greet(*arguments, **options)
+        made.append(driver)
+        return driver, carrier
+
+    def silent(*arguments: object, **options: object) -> None:
+        raise Timeout("no answer")
+
+    monkeypatch.setattr(sampling, "greet", greeted)
+    monkeypatch.setattr(sampling.Line, "ask", silent)
+    with yarpy.Port("/a", names=names) as port, pytest.raises(Timeout):
+        sampling.Line(port.contact, urgent="/urgent")
+    (driver,) = made
+    assert driver.transport.sock is not None and driver.transport.sock.fileno() < 0
 
 
 @pytest.fixture(scope="module")

@@ -76,8 +76,13 @@ class Line:
         driver, carrier = greet(contact, route, key=secret(), limit=SAMPLE_ANSWER, timeout=timeout)
         self._link = Outbound(driver, carrier)
         if urgent and sys.platform != "win32":  # which marks no packets for a program
-            driver.transport.set_dscp(tos_of("CRIT"))
-            self.ask("prop", "set", urgent, ["qos", [["tos", tos_of("CRIT")]]], timeout=timeout)
+            level = tos_of("CRIT")
+            try:
+                driver.transport.set_dscp(level)
+                self.ask("prop", "set", urgent, ["qos", [["tos", level]]], timeout=timeout)
+            except BaseException:
+                self.close()
+                raise
 
     def ask(self, *words: object, timeout: float = TIMEOUT) -> Bottle:
         """The answer to an administrative question. Raises LinkClosed, Timeout, DecodeError."""

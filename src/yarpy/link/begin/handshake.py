@@ -177,8 +177,12 @@ def call(
         opener: type[Opener] = registry.transports.load(way.name)
         transport = opener.dial(contact, timeout)
         if secure:
-            with scope.waking(transport.interrupt):
-                transport = _in_tls(transport, contact.host, deadline)
+            try:
+                with scope.waking(transport.interrupt):
+                    transport = _in_tls(transport, contact.host, deadline)
+            except BaseException:
+                transport.close()
+                raise
     except RemoteProtocolError as error:
         raise RemoteProtocolError(f"{contact.address}: {error}") from error
     except TimeoutError as error:

@@ -36,7 +36,7 @@ from yarpy.link.begin.handshake import GREETING, asked_carrier, find_carrier, gr
 from yarpy.link.driver import Driver
 from yarpy.link.receive.inbound import Inbound
 from yarpy.link.send.outbound import Outbound
-from yarpy.monitors.chain import refused_there
+from yarpy.monitors.chain import Chain, refused_there
 from yarpy.names.address import is_local, is_loopback
 from yarpy.port.connect import identity, probe, refusal
 from yarpy.port.connect.choosing import choose, instead
@@ -278,26 +278,13 @@ def _open_output(
                 raise
             driver, speaker = _greet(hub, other, route, lost, timeout)
             contact = other
-        if not route.peer and not identity.is_nameless(route):
-            identity.learn(contact, route, hub.key)
-        if not speaker.push:
-            # With a pull carrier the side that dials receives.
-            route.source, route.target = target, hub.name
-            source = Inbound(hub.inputs, driver, speaker)
-            hub.inputs.take(source)
-            Thread(target=hub.inputs.serve, args=(source,), daemon=True).start()
-            return route.spec
-        if speaker.delivery.broadcast or spec.recv:
-            _wait_for_member(hub, contact, speaker, driver)
-        link = Outbound(driver, speaker)
         try:
-            link.ride(chain)
-        except YarpError:
+            if not route.peer and not identity.is_nameless(route):
+                identity.learn(contact, route, hub.key)
+            _take(hub, contact, driver, speaker, chain)
+        except BaseException:
             driver.transport.close()
             raise
-        if spec.recv and link.ended():
-            raise LocalProtocolError(f'"{target}" hung up: {refused_there(spec, route)}')
-        hub.outputs.add(link)
         return route.spec
     except (YarpError, OSError) as error:
         if chain is not None:
@@ -307,6 +294,27 @@ def _open_output(
         if isinstance(error, YarpError) and not isinstance(error, Timeout):
             raise
         raise LinkClosed(str(error)) from error
+
+
+def _take(
+    hub: Hub, contact: Contact, driver: Driver, speaker: Carrier, chain: Chain | None
+) -> None:
+    """Make an open connection one of the port. Raises YarpError."""
+    route = speaker.route
+    if not speaker.push:
+        # With a pull carrier the side that dials receives.
+        route.source, route.target = route.target, hub.name
+        source = Inbound(hub.inputs, driver, speaker)
+        hub.inputs.take(source)
+        Thread(target=hub.inputs.serve, args=(source,), daemon=True).start()
+        return
+    if speaker.delivery.broadcast or route.spec.recv:
+        _wait_for_member(hub, contact, speaker, driver)
+    link = Outbound(driver, speaker)
+    link.ride(chain)
+    if route.spec.recv and link.ended():
+        raise LocalProtocolError(f'"{route.target}" hung up: {refused_there(route.spec, route)}')
+    hub.outputs.add(link)
 
 
 def _greet(
