@@ -88,6 +88,13 @@ def test_all_is_every_extra_of_users() -> None:
     assert set(named[1].split(",")) == set(extras) - {"all", "test", "build", "bench"}
 
 
+def test_extras_are_called_as_the_peers_that_they_are_for() -> None:
+    peers = {
+        path.name for path in (ROOT / "src/yarpy/peers").iterdir() if (path / "carrier.py").exists()
+    }
+    assert len(peers) == 6 and peers <= set(PROJECT["optional-dependencies"])
+
+
 def test_the_recipe_of_conda_says_the_same() -> None:
     recipe = yaml.safe_load((ROOT / "packaging" / "conda" / "recipe.yaml").read_text("utf-8"))
     assert recipe["package"] == {"name": PROJECT["name"], "version": PROJECT["version"]}

@@ -305,7 +305,7 @@ SHIPPED: Final[Mapping[str, Mapping[str, Row]]] = {
         Row("ros2", f"{_PEERS}.ros2.middleware:Ros2", "ros2"),
         Row("websocket", f"{_KITS}.wrap.websocket:WebSocket"),
         Row("zenoh", f"{_PEERS}.zenoh.middleware:Zenoh", "zenoh"),
-        Row("zeromq", f"{_PEERS}.zmq.middleware:ZeroMq", "wrap"),
+        Row("zeromq", f"{_PEERS}.zmq.middleware:ZeroMq", "zmq"),
     ),
     # Name services beside YARP's own, by the word in its configuration files (`names/base.py`).
     "names": _table(
@@ -321,7 +321,7 @@ SHIPPED: Final[Mapping[str, Mapping[str, Row]]] = {
     ),
     # Types of other systems, by the ending of their files; `name` finds them without a file.
     "idls": _table(
-        Row("thrift", f"{_KITS}.thrift.library:load", "idl"),
+        Row("thrift", f"{_KITS}.thrift.library:load", "thrift"),
         Row("msg", f"{_PEERS}.ros.message.library:load_type", "ros"),
         Row("srv", f"{_PEERS}.ros.message.library:load_type", "ros"),
         Row("name", f"{_PEERS}.ros.message.library:load_type", "ros"),
@@ -341,10 +341,10 @@ SHIPPED: Final[Mapping[str, Mapping[str, Row]]] = {
     "idl_commands": _table(
         Row("rosmsg", f"{_PEERS}.ros.verbs.rosmsg:command", "ros"),
         Row("sniff", f"{_PEERS}.ros.verbs.sniff:command"),
-        Row("thrift", f"{_KITS}.thrift.verbs.thrift:command", "idl"),
+        Row("thrift", f"{_KITS}.thrift.verbs.thrift:command", "thrift"),
     ),
     # What tells the questions of a typed connection apart, by the ending of a file of types.
-    "interfaces": _table(Row("thrift", f"{_KITS}.thrift.observed:read", "idl")),
+    "interfaces": _table(Row("thrift", f"{_KITS}.thrift.observed:read", "thrift")),
     # Types of devices in the files of robots (`kits/launch/robot/contract.py`).
     "devices": DEVICES,
     # Graphs in which a simulated robot is shown, too (`kits/sim/robot_publisher.py`).

@@ -59,6 +59,9 @@ def test_core_peers_and_kits_are_apart_with_what_each_needs(here):
     assert ours == sorted(ours, key=("core", "peers", "kits").index)
     zenoh = lines[lines.index("peers.zenoh:") :]
     assert zenoh[1].split(maxsplit=2) == ["carrier", "zenoh", 'pip install "yarpy[zenoh]"']
+    needs = {tuple(line.split(maxsplit=2)[:2]): line.split(maxsplit=2)[2:] for line in lines}
+    assert needs["name", "zenoh"] == ['pip install "yarpy[zenoh]"'] and needs["name", "ros"] == []
+    assert needs["idl", "thrift"] == ['pip install "yarpy[thrift]"']
 
 
 def test_the_list_loads_nothing(here, monkeypatch):

@@ -206,7 +206,7 @@ def test_carrier_strings(monkeypatch: pytest.MonkeyPatch) -> None:
         with pytest.raises(LocalProtocolError, match=why):
             curve.keys_of(parse_carrier(f"zmq+sub+{wrong}"))
     monkeypatch.setitem(__import__("sys").modules, "nacl", None)
-    with pytest.raises(LocalProtocolError, match=r"yarpy\[curve\]"):
+    with pytest.raises(LocalProtocolError, match=r"yarpy\[zmq\]"):
         curve.keys_of(parse_carrier(f"zmq+sub+curve.{key}"))
 
 

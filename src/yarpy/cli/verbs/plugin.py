@@ -1,5 +1,5 @@
-"""`yarpy plugin [NAME]`: the carriers, transports, types, monitors, middlewares, findings, devices
-and commands that are installed.
+"""`yarpy plugin [NAME]`: the carriers, transports, name services, types, monitors, middlewares,
+findings, devices, types of other systems and commands that are installed.
 
 Without NAME lists them, one per line (`--list`: names only), with what installs what they need:
 first the core, then each peer, each kit, and other packages, and says what this system has not got
@@ -71,8 +71,9 @@ def installed() -> list[Installed]:
     found = [
         _installed(kind, name)
         for kind in (
-            *(registry.carriers, registry.transports, registry.types, registry.monitors),
-            *(registry.middlewares, registry.findings, registry.devices),
+            *(registry.carriers, registry.transports, registry.names, registry.types),
+            *(registry.monitors, registry.middlewares, registry.findings, registry.devices),
+            *(registry.idls, registry.idl_commands),
         )
         for name in kind.names()
     ]

@@ -43,7 +43,7 @@ def library() -> ModuleType:
         from nacl import bindings
     except ImportError as error:
         raise LocalProtocolError(
-            'CURVE of ZeroMQ needs the package PyNaCl: pip install "yarpy[curve]"'
+            'CURVE of ZeroMQ needs the package PyNaCl: pip install "yarpy[zmq]"'
         ) from error
     return bindings
 

@@ -42,7 +42,7 @@ def context() -> Any:
     try:
         import zmq
     except ImportError as error:
-        raise UnknownPlugin("zeromq needs pyzmq: pip install 'yarpy[wrap]'") from error
+        raise UnknownPlugin("zeromq needs pyzmq: pip install 'yarpy[zmq]'") from error
     with _lock:
         found = _contexts.get(os.getpid())
         if found is None:

@@ -124,5 +124,5 @@ def test_what_is_too_large_or_too_deep() -> None:
 
 def test_without_lark_it_says_what_to_install(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setitem(sys.modules, "lark", None)
-    with pytest.raises(UnknownPlugin, match=r"pip install 'yarpy\[idl\]'"):
+    with pytest.raises(UnknownPlugin, match=r"pip install 'yarpy\[thrift\]'"):
         parse("")

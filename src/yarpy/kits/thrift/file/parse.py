@@ -4,7 +4,7 @@
 
 Rules: what is read in a file does not depend on others: names are looked up by `interface`.
 Comments `/** ... */` belong to what follows. Time is in proportion to the length of the file. lark
-is imported here and nowhere else (extra `idl`).
+is imported here and nowhere else (extra `thrift`).
 """
 
 from __future__ import annotations
@@ -131,7 +131,7 @@ def _library() -> Any:
         import lark
     except ImportError:
         raise UnknownPlugin(
-            "reading .thrift files takes the package lark: pip install 'yarpy[idl]' (modules "
+            "reading .thrift files takes the package lark: pip install 'yarpy[thrift]' (modules "
             "written by `yarpy idl thrift` work without it)"
         ) from None
     return lark
