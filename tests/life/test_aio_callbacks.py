@@ -126,7 +126,8 @@ async def _nothing(message: object) -> None:
 
 
 def _get(url: str) -> None:
-    urllib.request.urlopen(url, timeout=HANG).read()
+    with urllib.request.urlopen(url, timeout=HANG) as answer:
+        answer.read()
 
 
 def happens(kind: str, act: Act, port: type[aio.base.BasePort[Any]]) -> None:

@@ -159,7 +159,8 @@ class World:
 
 def _get(url: str) -> None:
     try:
-        urllib.request.urlopen(url, timeout=HANG).read()
+        with urllib.request.urlopen(url, timeout=HANG) as answer:
+            answer.read()
     except OSError:
         pass  # the port may be closed before it answers
 

@@ -108,7 +108,8 @@ def test_browsers_get_403(server: yarpy.NameServer) -> None:
             with urllib.request.urlopen(f"http://{server.address}/?req={question}") as answer:
                 return answer.status, answer.read().decode()
         except urllib.error.HTTPError as error:
-            return error.code, error.read().decode()
+            with error:
+                return error.code, error.read().decode()
 
     assert status("register+/arm")[0] == 403
     assert "Access refused" in status("unregister+/root")[1]

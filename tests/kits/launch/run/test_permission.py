@@ -138,8 +138,10 @@ def test_a_web_page_starts_nothing(node: RunClient, origin: str | None) -> None:
         request = urllib.request.Request(f"http://{host}:{port}{path}", data)
         if origin is not None:
             request.add_header("Origin", origin)
-        with pytest.raises((urllib.error.HTTPError, ConnectionError)):
+        with pytest.raises((urllib.error.HTTPError, ConnectionError)) as refused:
             urllib.request.urlopen(request, timeout=HANG)
+        if isinstance(refused.value, urllib.error.HTTPError):
+            refused.value.close()
     assert node.running() == []
 
 

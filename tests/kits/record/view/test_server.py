@@ -26,7 +26,8 @@ def get(url: str, headers: dict[str, str] | None = None) -> tuple[int, HTTPMessa
         with urllib.request.urlopen(asked, timeout=HANG) as answer:
             return answer.status, answer.headers, answer.read()
     except urllib.error.HTTPError as error:
-        return error.code, error.headers, error.read()
+        with error:
+            return error.code, error.headers, error.read()
 
 
 def test_pages(view: View) -> None:
