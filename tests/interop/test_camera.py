@@ -294,18 +294,20 @@ def test_rate_and_quality() -> None:
         for thread in threads:
             thread.start()
         started = time.monotonic()
-        while time.monotonic() - started < 1.5:
+
+        def slow() -> bool:
+            """Return whether there is one that hears a tenth of a second apart, and others more."""
             port.write(NOISE)
-            time.sleep(0.02)
-        rates = [int(link.stats.messages) / 1.5 for link in port.outputs]
+            fewest, *_, most = sorted(int(link.stats.messages) for link in port.outputs)
+            assert fewest <= 10 * (time.monotonic() - started) + 2
+            return fewest > 8 and most > fewest + 8
+
+        wait_until(slow)
     for thread in threads:
         thread.join(HANG)
     for browser in browsers:
         browser.close()
     assert sizes[1][0] < sizes[0][0] / 2
-    assert min(rates) <= 11.5
-    assert min(rates) >= 7
-    assert max(rates) > 20
 
 
 def test_port_that_shows_something_else_counts_it() -> None:
