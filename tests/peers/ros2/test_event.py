@@ -1,6 +1,9 @@
 """Events of QoS: counted, and told."""
 
+import threading
+
 import pytest
+from support.wait import HANG
 
 from yarpy.peers.ros2.event import CHANGED, MESSAGE, Event, Events
 
@@ -20,3 +23,12 @@ def test_counted_and_told(caplog: pytest.LogCaptureFixture) -> None:
     events.hear = fail
     events.tell(Event(MESSAGE, 1))
     assert "what hears of message_lost failed" in caplog.text
+
+    def leave(event: Event) -> None:
+        raise SystemExit(3)
+
+    events.hear = leave
+    thread = threading.Thread(target=events.tell, args=(Event(MESSAGE, 1),))
+    thread.start()
+    thread.join(HANG)
+    assert "sys.exit() in a thread of a port ends no program" in caplog.text

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import logging
+import sys
 import threading
 from concurrent.futures import Future
 from typing import Any
@@ -47,10 +48,19 @@ def test_a_worker_takes_one_after_the_other(caplog: pytest.LogCaptureFixture) ->
         free.set()
         wait_until(lambda: len(done) >= ROS2_QUESTIONS - 1)
     assert done == sorted(done)
-    assert "a defect" in caplog.text
+    assert "a callback failed" in caplog.text
     worker.close()
     worker.threads[0].join()
     assert not worker.put(act, 1)
+
+
+def test_who_calls_sys_exit_ends_no_worker(caplog: pytest.LogCaptureFixture) -> None:
+    worker, done = Worker("test"), threading.Event()
+    worker.put(sys.exit, 3)
+    worker.put(lambda _: done.set(), 0)
+    assert done.wait(HANG)
+    assert "sys.exit() in a thread of a port ends no program" in caplog.text
+    worker.close()
 
 
 def test_a_worker_of_several_threads_takes_as_many_at_once() -> None:
@@ -78,6 +88,13 @@ def test_questions_are_answered_once() -> None:
     assert (given.to, server.kind.Response.from_ros(b"".join(given.body)).sum) == ("who", 3)
 
 
+def answer_in_a_thread(server: Server, handler: Any, item: Incoming) -> None:
+    """As in a node: in the main thread of a program sys.exit() goes on."""
+    thread = threading.Thread(target=answer_with, args=(server, handler, item, "/node"))
+    thread.start()
+    thread.join(HANG)
+
+
 def test_what_is_no_question_is_told() -> None:
     server = Server()
     answer_with(server, lambda question: None, Incoming(b"\0\1\0\0", asked="who"), "/node")
@@ -89,6 +106,12 @@ def test_what_is_no_question_is_told() -> None:
     body = b"".join(server.kind.Request(a=1, b=2).to_ros())
     answer_with(server, fail, Incoming(body, asked="who"), "/node")
     assert server.given[1].failure == "ZeroDivisionError: of the test"
+
+    def leave(question: Question) -> None:
+        sys.exit(3)
+
+    answer_in_a_thread(server, leave, Incoming(body, asked="who"))
+    assert server.given[2].failure == "SystemExit: 3"
 
 
 def test_results_in_time() -> None:

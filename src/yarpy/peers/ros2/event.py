@@ -17,7 +17,8 @@ from collections import Counter
 from collections.abc import Callable
 from typing import Final, NamedTuple
 
-from yarpy.log import logger
+from yarpy.log import log_failure, logger
+from yarpy.monitors.base import FAILURES
 
 log = logger("yarpy.ros2")
 
@@ -51,5 +52,5 @@ class Events:
         if hear is not None:
             try:
                 hear(event)
-            except Exception:
-                log.exception("what hears of %s failed", event.kind)
+            except FAILURES as error:
+                log_failure(log, error, "what hears of %s failed", event.kind)

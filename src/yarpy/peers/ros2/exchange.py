@@ -17,7 +17,8 @@ from typing import Any, Final, Protocol
 
 from yarpy.errors import DecodeError, Timeout
 from yarpy.limit import ROS2_QUESTIONS
-from yarpy.log import logger
+from yarpy.log import log_failure, logger
+from yarpy.monitors.base import FAILURES
 from yarpy.peers.ros.message.message import Message
 from yarpy.peers.ros2.carrier import Incoming, Outgoing
 
@@ -70,8 +71,8 @@ class Worker:
                 continue
             try:
                 act(item)
-            except Exception:
-                log.exception("%s: a defect", self._name)
+            except FAILURES as error:
+                log_failure(log, error, "%s: a callback failed", self._name)
 
     def close(self) -> None:
         """Let the threads end. Idempotent."""
@@ -118,8 +119,8 @@ def answer_with(
     except DecodeError as error:
         server.dropped += 1
         question.fail(str(error))
-    except Exception as error:
-        log.exception("%s: the handler of %s failed", node, server.name)
+    except FAILURES as error:
+        log_failure(log, error, "%s: the handler of %s failed", node, server.name)
         question.fail(f"{type(error).__name__}: {error}")
 
 

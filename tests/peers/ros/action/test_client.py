@@ -1,5 +1,7 @@
 """Goals that are sent to actionlib's own server, and to nobody."""
 
+import threading
+
 import pytest
 from peers.ros.conftest import graph
 from support.ros_graph import RosGraph
@@ -63,6 +65,29 @@ def test_nobody_is_there(graph: RosGraph) -> None:
         with pytest.raises((TypeError, ValueError)):
             client.send(["many"])
         client.close()
+
+
+def test_another_server_at_once_does_not_know_the_goal(
+    graph: RosGraph, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """As one that was killed, and was started again by roslaunch."""
+    monkeypatch.setattr(module, "GRACE", 0.5)
+    with Node("/asks") as asker:
+        client = ActionClient(asker, "/again", "actionlib/Test")
+        first = Node("/serves")
+        server = ActionServer(first, "/again", "actionlib/Test", lambda goal: goal.wait(HANG))
+        assert client.wait_for_server(HANG)
+        goal = client.send([1])
+        wait_until(lambda: goal.listed)
+        monkeypatch.setattr(server, "_end", lambda goal, found: None)  # no last words
+        with Node("/serves_again") as second:
+            ActionServer(second, "/again", "actionlib/Test", lambda goal: None)
+            wait_until(lambda: len(client._goal.outputs) == 2)
+            threading.Thread(target=first.close, daemon=True).start()
+            with pytest.raises(LinkClosed, match="went away"):
+                goal.result(HANG)
+            assert goal.status == Status.LOST and goal.forgotten
+        first.close()
 
 
 def test_a_server_that_goes(graph: RosGraph, monkeypatch: pytest.MonkeyPatch) -> None:

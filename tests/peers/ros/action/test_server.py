@@ -1,7 +1,9 @@
 """Goals that are carried out, for ours and for actionlib's own clients."""
 
 import json
+import sys
 import threading
+from typing import Any
 
 import pytest
 from peers.ros.conftest import graph
@@ -89,6 +91,36 @@ def test_a_client_of_ours(graph: RosGraph) -> None:
         assert [*goal.result(HANG).sequence] == [0, 1, 1, 2, 3, 5]
         assert goal.status == Status.SUCCEEDED and goal.done
         assert len(told) == 4
+
+
+def test_what_accepts_goals_and_what_carries_them_out_may_fail(
+    graph: RosGraph, caplog: pytest.LogCaptureFixture
+) -> None:
+    def accept(request: Any) -> bool:
+        if request.goal == 1:
+            raise ValueError("of the test")
+        return True
+
+    def run(goal: Goal) -> object:
+        if goal.request.goal == 2:
+            sys.exit("of the test")
+        return [7]
+
+    with Node("/serves") as node, Node("/asks") as asker:
+        ActionServer(node, "/fails", "actionlib/Test", run, accept=accept, single=True)
+        client = ActionClient(asker, "/fails", "actionlib/Test")
+        assert client.wait_for_server(HANG)
+        came = []
+        for number in (1, 2, 3):
+            goal = client.send([number])
+            goal.result(HANG)
+            came.append((goal.status.name, goal.text))
+    assert came == [
+        ("REJECTED", "ValueError: of the test"),
+        ("ABORTED", "SystemExit: of the test"),
+        ("SUCCEEDED", ""),
+    ]
+    assert "sys.exit() in a thread" in caplog.text
 
 
 def test_a_single_goal_at_a_time(graph: RosGraph) -> None:

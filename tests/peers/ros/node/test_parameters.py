@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import queue
+import sys
 from typing import Any
 
 import pytest
@@ -145,6 +146,8 @@ def test_a_callback_that_fails_is_called_again(
 
     def fails(value: Any) -> None:
         seen.put(value)
+        if value is None:
+            sys.exit("too early")
         raise ValueError("too fast")
 
     with Node("/failing") as node:

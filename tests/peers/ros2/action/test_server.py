@@ -1,6 +1,7 @@
 """Goals that are carried out, asked for by ours and by an implementation of others."""
 
 import json
+import sys
 import threading
 from collections.abc import Iterator
 from pathlib import Path
@@ -24,11 +25,13 @@ FIBONACCI = "example_interfaces/action/Fibonacci"
 
 
 def execute(goal: Goal) -> object:
-    """The numbers, at once; of negative ones those until it is canceled; none of 13."""
+    """The numbers, at once; of negative ones those until it is canceled; none of 12 and 13."""
     numbers = [0, 1]
     order = goal.request.order
     if order == 13:
         raise RuntimeError("no thirteen")
+    if order == 12:
+        sys.exit("no twelve")
     while len(numbers) < order or order < 0:
         numbers.append(numbers[-1] + numbers[-2] & 0xFFFF)
         goal.feedback([numbers])
@@ -58,14 +61,19 @@ def client(server: ActionServer) -> Iterator[ActionClient]:
 
 @pytest.mark.parametrize(
     ("order", "status", "numbers"),
-    [(6, 4, [0, 1, 1, 2, 3, 5]), (13, Status.ABORTED, []), (4, Status.ABORTED, [])],
+    [
+        (6, 4, [0, 1, 1, 2, 3, 5]),
+        (13, Status.ABORTED, []),
+        (12, Status.ABORTED, []),
+        (4, Status.ABORTED, []),
+    ],
 )
 def test_a_goal(client: ActionClient, order: int, status: int, numbers: list[int]) -> None:
     told: list[Any] = []
     goal = client.send([order], told.append)
     assert [*goal.result(HANG).sequence] == numbers
     assert goal.status == status and goal.done
-    wait_until(lambda: len(told) == (0 if order == 13 else order - 2))
+    wait_until(lambda: len(told) == (0 if order in (12, 13) else order - 2))
 
 
 def test_a_goal_that_is_canceled(client: ActionClient, server: ActionServer) -> None:

@@ -47,7 +47,7 @@ def test_an_answer_waits_for_its_reader(
     server = Pair(part, node, own, kind, Qos(), True, asked.put)
     client = Pair(part, node, own, kind, Qos(), False, answered.put)
     try:
-        wait_until(client.is_served)
+        wait_until(lambda: bool(client.servers()))
         looked = []
 
         def late(half: object, what: str, real: Any = server._matching) -> list[Any]:

@@ -94,6 +94,31 @@ def test_who_goes_during_a_call(here: None, own: str) -> None:
         caller.ask([1, 2]).result(HANG)
 
 
+def test_a_server_that_comes_later_does_not_know_of_a_question(here: None, own: str) -> None:
+    held: list[Question] = []
+    servers = [ros2.Node(f"{own}{number}", rmw="dds") for number in range(2)]
+    caller = DdsCaller(Node("/", f"{own[1:]}_asker"), 0, f"{own}/again", ADD)
+
+    def serve(server: ros2.Node) -> None:
+        server._answer(f"{own}/again", ADD, held.append, server._worker, None)
+
+    serve(servers[0])
+    assert caller.wait(HANG)
+    asked = caller.ask([1, 2])
+    wait_until(lambda: len(held) == 1)
+    serve(servers[1])
+    wait_until(lambda: len(caller._servers()) == 2)
+    both = caller.ask([3, 4])
+    wait_until(lambda: len(held) == 3)
+    servers[0].close()
+    with pytest.raises(LinkClosed, match="went away"):
+        asked.result(HANG)
+    held[-1 if held[-1].request.a == 3 else -2].answer([7])
+    assert not both.done() or both.result(HANG).sum == 7
+    servers[1].close()
+    caller.close()
+
+
 def test_slow_questions_are_answered_side_by_side(here: None, own: str) -> None:
     both = threading.Barrier(2)
 

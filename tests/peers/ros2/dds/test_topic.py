@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+import sys
 import threading
 from typing import Any
 
+import pytest
 from support.wait import HANG, wait_until
 
 from yarpy.peers import ros2
@@ -33,6 +35,26 @@ def test_topics(here: None, own: str) -> None:
         wait_until(lambda: writer.subscribers == 0)
         writer.close()
         assert writer.subscribers == 0
+
+
+def test_who_calls_sys_exit_goes_on_hearing(
+    here: None, own: str, caplog: pytest.LogCaptureFixture
+) -> None:
+    heard: list[Any] = []
+
+    def hear(message: Any) -> None:
+        heard.append(message.data)
+        if message.data == "leave":
+            sys.exit(3)
+
+    with ros2.Node(own, rmw="dds") as node:
+        node.subscriber(f"{own}/x", "std_msgs/msg/String", hear)
+        writer = node.publisher(f"{own}/x", "std_msgs/msg/String")
+        wait_until(lambda: writer.subscribers == 1)
+        writer.write("leave")
+        writer.write("stay")
+        wait_until(lambda: heard == ["leave", "stay"])
+    assert "sys.exit() in a thread of a port ends no program" in caplog.text
 
 
 def test_a_signal_handler_closes_in_the_middle_of_a_write(here: None, own: str) -> None:

@@ -1,6 +1,7 @@
 """A managed node, changed by its program and by others."""
 
 import json
+import threading
 from pathlib import Path
 from typing import Any
 
@@ -26,7 +27,7 @@ class Driver(ros2.LifecycleNode):
 
     def _say(self, name: str) -> Any:
         said = getattr(self, "answers", {}).get(name)
-        if isinstance(said, Exception):
+        if isinstance(said, Exception | SystemExit):
             raise said
         return said
 
@@ -69,6 +70,15 @@ def test_what_fails(names: yarpy.LocalNames, answers: dict[str, object], state: 
         node.answers = answers
         assert not node.trigger("activate")
         assert node.state is state
+
+
+def test_who_calls_sys_exit_is_in_no_state_in_between(names: yarpy.LocalNames) -> None:
+    with Driver("/laser") as node:
+        node.answers = {"configure": SystemExit(3)}
+        thread = threading.Thread(target=node.trigger, args=("configure",))
+        thread.start()
+        thread.join(HANG)
+        assert node.state is State.FINALIZED
 
 
 def test_others_change_it(names: yarpy.LocalNames) -> None:

@@ -5,7 +5,7 @@
     print(client.send([6]).result(timeout=10.0).sequence)
 
 Rules: feedback comes in the thread of its connection, so what it calls does something short. Who
-waits for a result learns when the server goes away.
+waits for a result learns when the server goes away, also where another one is in its place at once.
 """
 
 from __future__ import annotations
@@ -47,6 +47,8 @@ class SentGoal:
         self.text = ""  # what the server says beside the result
         self.told = told
         self.found: Any = None
+        self.listed = False  # whether the server knows of it: its status names all such goals
+        self.forgotten = 0.0  # since when it does not any more: another server has that name now
         self._client = client
 
     @property
@@ -143,7 +145,7 @@ class ActionClient:
                     return goal.found
             now = time.monotonic()
             away = 0.0 if self.is_served else away or now
-            if away and now - away > GRACE:
+            if any(since and now - since > GRACE for since in (away, goal.forgotten)):
                 goal.status = Status.LOST
                 raise LinkClosed(f"who serves {self.name} went away before the goal was over")
             if deadline is not None and now >= deadline:
@@ -164,10 +166,15 @@ class ActionClient:
             goal.told(message.feedback)
 
     def _hear_status(self, message: Any) -> None:
-        for item in message.status_list:
-            goal = self._goals.get(item.goal_id.id)
-            if goal is not None:
+        told = {item.goal_id.id: item for item in message.status_list}
+        now = time.monotonic()
+        for goal in [*self._goals.values()]:
+            item = told.get(goal.id)
+            if item is not None:
+                goal.listed, goal.forgotten = True, 0.0
                 self._note(goal, item)
+            elif goal.listed and not goal.forgotten:
+                goal.forgotten = now  # the result has a connection of its own, and may still come
 
     def _hear_result(self, message: Any) -> None:
         goal = self._goals.get(message.status.goal_id.id)

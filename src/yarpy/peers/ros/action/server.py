@@ -17,7 +17,8 @@ from typing import Any, Final
 
 from yarpy.errors import PortClosed
 from yarpy.limit import ROS_FRAME_NAME, ROS_GOALS
-from yarpy.log import logger
+from yarpy.log import log_failure, logger
+from yarpy.monitors.base import FAILURES
 from yarpy.peers.ros.action.status import (
     CANCEL_TYPE,
     STATUS_TYPE,
@@ -158,12 +159,21 @@ class ActionServer:
                 self._goals[id_] = goal
         if recalled:
             self._end(goal, Ended(Status.RECALLED, None, "it was canceled before it came"))
-        elif full or not self._accept(goal.request):
-            self._end(goal, Ended(Status.REJECTED, None, "it is not accepted"))
+        elif full or (why := self._refusal(goal)):
+            why = "there are too many" if full else why
+            self._end(goal, Ended(Status.REJECTED, None, why))
         else:
             before = under_way if self._single else []
             name = f"yarpy goal of {self.name}"
             threading.Thread(target=self._run, args=(goal, before), name=name, daemon=True).start()
+
+    def _refusal(self, goal: Goal) -> str:
+        """Return why a goal is not accepted; "" if it is."""
+        try:
+            return "" if self._accept(goal.request) else "it is not accepted"
+        except FAILURES as error:
+            log_failure(log, error, "%s: what accepts goals failed", self.name)
+            return f"{type(error).__name__}: {error}"
 
     def _cancel(self, message: Any) -> None:
         """Somebody wants goals to be given up: one, all up to a moment, or all."""
@@ -208,8 +218,8 @@ class ActionServer:
             if not isinstance(found, Ended):
                 found = Ended(Status.SUCCEEDED, found, "")
             found.result = made(self.types.Result, found.result)
-        except Exception as error:
-            log.exception("%s: a goal failed", self.name)
+        except FAILURES as error:
+            log_failure(log, error, "%s: a goal failed", self.name)
             found = Ended(Status.ABORTED, None, f"{type(error).__name__}: {error}")
         self._end(goal, found)
 

@@ -17,7 +17,8 @@ from collections.abc import Callable
 from typing import Any, Final
 
 from yarpy.errors import LocalProtocolError, UnknownName, YarpError
-from yarpy.log import logger
+from yarpy.log import log_failure, logger
+from yarpy.monitors.base import FAILURES
 from yarpy.peers.ros.master import RosMaster
 
 log = logger("yarpy.ros")
@@ -115,8 +116,8 @@ class Followed:
                     last[:] = [value]
                     try:
                         callback(None if value is UNSET else value)
-                    except Exception:
-                        log.exception("%s: the callback of %s failed", self._node, key)
+                    except FAILURES as error:
+                        log_failure(log, error, "%s: the callback of %s failed", self._node, key)
 
 
 def _parts(key: str) -> list[str]:

@@ -12,7 +12,8 @@ from concurrent.futures import Future
 from typing import Any
 
 from yarpy.errors import LocalProtocolError, RemoteProtocolError
-from yarpy.log import logger
+from yarpy.log import log_failure, logger
+from yarpy.monitors.base import FAILURES
 from yarpy.peers.ros.message.message import Message
 from yarpy.peers.ros2.action.status import Refusal, Status, id_of, new_id, uuid_of
 from yarpy.peers.ros2.exchange import Worker, result_of
@@ -138,8 +139,8 @@ class ActionClient:
         if told is not None:
             try:
                 told(message.feedback)
-            except Exception:
-                log.exception("%s: what takes the feedback failed", self.name)
+            except FAILURES as error:
+                log_failure(log, error, "%s: what takes the feedback failed", self.name)
 
     def hear_status(self, message: Any) -> None:
         """An object of action_msgs/msg/GoalStatusArray has come, of all goals."""

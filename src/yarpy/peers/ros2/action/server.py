@@ -14,7 +14,8 @@ from collections.abc import Callable
 from typing import Any, Final
 
 from yarpy.limit import ROS2_GOALS, ROS2_QUESTIONS
-from yarpy.log import logger
+from yarpy.log import log_failure, logger
+from yarpy.monitors.base import FAILURES
 from yarpy.peers.ros.message.message import Message
 from yarpy.peers.ros2.action.status import Refusal, Status, id_of, nanoseconds_of, stamp_of, uuid_of
 from yarpy.peers.ros2.exchange import Question
@@ -180,8 +181,8 @@ class ActionServer:
             if not isinstance(found, Ended):
                 found = Ended(Status.SUCCEEDED, found)
             result = self._result(found.result)
-        except Exception:
-            log.exception("%s: a goal failed", self.name)
+        except FAILURES as error:
+            log_failure(log, error, "%s: a goal failed", self.name)
             found = Ended(Status.ABORTED, None)
             result = self._result(None)
         with self.changed:

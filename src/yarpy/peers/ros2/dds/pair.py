@@ -194,22 +194,26 @@ class Pair:
 
         return act
 
-    def is_served(self) -> bool:
-        """Return whether a server knows both halves of ours, and we both of its."""
-        ids: set[bytes] = set()
-        plain = 0
+    def servers(self) -> frozenset[bytes]:
+        """Return the servers that know both halves of ours, and we both of theirs: the identities
+        of their readers."""
+        said: dict[bytes, bytes] = {}
+        plain: dict[bytes, Any] = {}  # of programs that do not say which halves belong together
         for item in self._matching(self.writer, "subscription"):
-            if item.key.bytes[:2] == FAST_DDS:
+            key = item.key.bytes
+            if key[:2] == FAST_DDS:
                 continue
-            said = _SERVER.search(_userdata(item.qos))
-            plain += said is None
-            if said is not None:
-                ids.add(said[1])
+            found = _SERVER.search(_userdata(item.qos))
+            if found is None:
+                plain[key] = item.participant_key
+            else:
+                said[key] = found[1]
         answers = self._matching(self.reader, "publication")
-        if not ids:
-            return bool(plain and answers)
-        found = (_SERVER.search(_userdata(item.qos)) for item in answers)
-        return any(said is not None and said[1] in ids for said in found)
+        if not said:
+            programs = {item.participant_key for item in answers}
+            return frozenset(key for key, program in plain.items() if program in programs)
+        ids = {found[1] for item in answers if (found := _SERVER.search(_userdata(item.qos)))}
+        return frozenset(key for key, id_ in said.items() if id_ in ids)
 
     def why_not(self) -> str:
         """Return why nobody is asked."""

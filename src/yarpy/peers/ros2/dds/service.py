@@ -119,7 +119,8 @@ class DdsCaller:
         self.kind: Any = None
         self._part = POOL.take(domain)
         self._pair: Pair | None = None
-        self._asked: dict[int, Future[bytes]] = {}
+        # With who served when it was asked: who comes later does not know of it.
+        self._asked: dict[int, tuple[Future[bytes], frozenset[bytes]]] = {}
         self._count = 0
         self._lock = threading.Lock()
         self._closed = False
@@ -147,7 +148,11 @@ class DdsCaller:
 
     def is_served(self) -> bool:
         """Return whether somebody serves it as the type that we have."""
-        return self._pair is not None and not self._closed and self._pair.is_served()
+        return bool(self._servers())
+
+    def _servers(self) -> frozenset[bytes]:
+        pair = self._pair
+        return frozenset() if pair is None or self._closed else pair.servers()
 
     def wait(self, timeout: float | None = None) -> bool:
         """Wait until somebody serves it; return False if time is over."""
@@ -180,17 +185,21 @@ class DdsCaller:
         """As `ask`, with the bytes of a request; the future has those of the response."""
         found: Future[bytes] = Future()
         pair = self._pair
-        if pair is None or not self.is_served():
+        given_up = None
+        with self._lock:  # also while it looks who serves: `_look` has to find the question then
+            servers = self._servers()
+            if servers:
+                self._count += 1
+                self._asked[self._count] = found, servers
+                if len(self._asked) > MOST_ASKED:
+                    given_up = self._asked.pop(next(iter(self._asked)))
+            number = self._count
+        if pair is None or not servers:
             found.set_exception(UnknownName(pair.why_not() if pair else f"{self.name} is closed"))
             return found
-        with self._lock:
-            self._count += 1
-            number = self._count
-            self._asked[number] = found
-            old = next(iter(self._asked)) if len(self._asked) > MOST_ASKED else None
-            given_up = None if old is None else self._asked.pop(old)
         if given_up is not None:
-            given_up.set_exception(LinkClosed(f"{self.name} answers nothing: this one is given up"))
+            why = f"{self.name} answers nothing: this one is given up"
+            given_up[0].set_exception(LinkClosed(why))
         pair.write(pair.who, number, body)
         return found
 
@@ -204,19 +213,23 @@ class DdsCaller:
         if sample.who != self._pair.who:
             return  # of somebody else's question
         with self._lock:
-            found = self._asked.pop(sample.number, None)
-        if found is not None:
-            found.set_result(sample.body)
+            asked = self._asked.pop(sample.number, None)
+        if asked is not None:
+            asked[0].set_result(sample.body)
 
     def _look(self) -> None:
         """Somebody has come or gone."""
-        if self._asked and not self.is_served():
-            self._give_up(f"{GONE} {self.name} went away during the call")
+        with self._lock:
+            servers = self._servers() if self._asked else frozenset()
+            lost = [number for number, asked in self._asked.items() if not asked[1] & servers]
+            gone = [self._asked.pop(number)[0] for number in lost]
+        for found in gone:
+            found.set_exception(LinkClosed(f"{GONE} {self.name} went away during the call"))
 
     def _give_up(self, why: str) -> None:
         with self._lock:
             asked, self._asked = self._asked, {}
-        for found in asked.values():
+        for found, _ in asked.values():
             found.set_exception(LinkClosed(why))
 
     def close(self) -> None:

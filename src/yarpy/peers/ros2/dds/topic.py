@@ -11,7 +11,8 @@ from collections.abc import Callable
 from typing import Any, Final
 
 from yarpy.errors import DecodeError
-from yarpy.log import logger
+from yarpy.log import log_failure, logger
+from yarpy.monitors.base import FAILURES
 from yarpy.peers.ros2.body import encode_body
 from yarpy.peers.ros2.carrier import Incoming, Outgoing
 from yarpy.peers.ros2.dds.endpoint import DdsPublisher, DdsSubscriber
@@ -107,8 +108,8 @@ class DdsReader(DdsSubscriber):
                 continue
             try:
                 self._callback(value)
-            except Exception:
-                log.exception("%s: the callback of %s failed", self.node, self.name)
+            except FAILURES as error:
+                log_failure(log, error, "%s: the callback of %s failed", self.node, self.name)
 
     def close(self) -> None:
         """Idempotent."""

@@ -17,6 +17,8 @@ import time
 from collections.abc import Callable
 from typing import Any, Final
 
+from yarpy.log import log_failure
+from yarpy.monitors.base import FAILURES
 from yarpy.peers.ros2.exchange import Question, Worker
 from yarpy.peers.ros2.node.node import Node
 from yarpy.peers.ros2.node.state import (
@@ -130,15 +132,15 @@ class LifecycleNode(Node):
         try:
             said = getattr(self, _CALLED[way.goal])()
             outcome = Outcome.FAILURE if said is False else Outcome.SUCCESS
-        except Exception:
-            self.logger.exception("%s: %s failed", self.name, _CALLED[way.goal])
+        except FAILURES as error:
+            log_failure(self.logger, error, "%s: %s failed", self.name, _CALLED[way.goal])
             outcome = Outcome.ERROR
         self._step(end_of(way.goal, outcome))
         if outcome is Outcome.ERROR:
             try:
                 handled = Outcome.SUCCESS if self.on_error() is True else Outcome.FAILURE
-            except Exception:
-                self.logger.exception("%s: on_error failed", self.name)
+            except FAILURES as error:
+                log_failure(self.logger, error, "%s: on_error failed", self.name)
                 handled = Outcome.ERROR
             self._step(end_of(State.ERRORPROCESSING, handled))
         return outcome is Outcome.SUCCESS
