@@ -10,7 +10,7 @@ from __future__ import annotations
 
 import errno
 import time
-from typing import Any, Final, TypeVar
+from typing import Any, ClassVar, Final, TypeVar
 
 from yarpy.errors import LinkClosed, LocalProtocolError, RemoteProtocolError, Timeout, YarpError
 from yarpy.link.begin.admission import Admission, Rival, Room, any_number, no_rival
@@ -28,7 +28,9 @@ SHORT: Final = 0.25  # seconds of a wait that ends when it should
 
 
 class Driver:
-    """A transport and the stream in front of it."""
+    """A transport and the stream in front of it. `pushes`: something may leave by `push`."""
+
+    pushes: ClassVar[bool] = True
 
     def __init__(self, transport: Transport, stream: ByteStream) -> None:
         self.transport = transport

@@ -14,6 +14,8 @@ from yarpy.wire.stream import ObjectStream
 class ObjectDriver(Driver):
     """A transport of objects and the stream in front of it."""
 
+    pushes = False
+
     def __init__(self, transport: ObjectTransport, stream: ObjectStream) -> None:
         super().__init__(transport, stream)
         self._pipe = transport

@@ -277,14 +277,14 @@ def test_a_timed_read_ends_also_where_a_timer_interrupts_it(
             return wait_readable(seconds)
 
         def wait() -> None:
+            link.turn.ask(threading.get_ident())
+            near.sendall(message([1]))
+            wait_until(lambda: link.turn.leased)
+            monkeypatch.setattr(transport, "wait_readable", noted)
             assert read(link, time.monotonic() + 60) is None
             assert link.turn.lease is None or link.turn.lease.over, "nothing came for a while"
 
         thread = threading.Thread(target=wait)
-        link.turn.ask(threading.get_ident())
-        near.sendall(message([1]))
-        wait_until(lambda: link.turn.leased)
-        monkeypatch.setattr(transport, "wait_readable", noted)
         if main:
             wait()
         else:

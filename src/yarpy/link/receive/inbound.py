@@ -317,8 +317,7 @@ class Inbound:
         lasts = deadline is None
         if deadline is not None and (now := time.monotonic()) + SILENCE <= deadline:
             # Signals come to the main thread, and make the limit of the lease longer.
-            main = threading.current_thread() is threading.main_thread()
-            lasts, deadline = True, now + SILENCE if main else None
+            lasts, deadline = True, now + SILENCE if lease.main else None
         try:
             if receiver.held is None:
                 if receiver.question is not None:

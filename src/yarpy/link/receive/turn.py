@@ -24,6 +24,7 @@ lease is over, and no thread looks at a clock.
 
 from __future__ import annotations
 
+import threading
 import time
 from collections.abc import Callable
 from typing import Final
@@ -38,10 +39,11 @@ LEAVING: Final = 0.0005  # seconds between looks whether the reader is out
 class Lease:
     """The right of one thread to read a connection, until it is over."""
 
-    __slots__ = ("_parked", "busy", "forsaken", "open", "over", "reader", "seen")
+    __slots__ = ("_parked", "busy", "forsaken", "main", "open", "over", "reader", "seen")
 
     def __init__(self, reader: int) -> None:
         self.reader = reader  # the thread's identifier
+        self.main = reader == threading.main_thread().ident
         self.open = False  # the connection's thread does nothing any more
         self._parked = Waiter()
         self.busy = False  # it is reading

@@ -60,6 +60,7 @@ class Sender:
 
     def __init__(self, driver: Driver, carrier: Carrier, limit: float | None = None) -> None:
         self.driver = driver
+        self._pushes = driver.pushes
         self.carrier = carrier
         self.route: Route = carrier.route
         self.counter = Counter(since=time.time())
@@ -130,10 +131,12 @@ class Sender:
             if pause > RUSH * self._cost and not self.more:
                 # Who was flooding and paused for less than a burst lasts has been interrupted.
                 self._rush = BURST - 1 if self._rush == BURST and pause < LASTING else 0
-                left = (not self.gathered and driver.push()) or self.flush(until)
+                pushed = self._pushes and not self.gathered and driver.push()
+                left = pushed or self.flush(until)
             elif self._rush < BURST and not self.more:
                 self._rush += 1
-                left = (not self.gathered and driver.push()) or self.flush(until)
+                pushed = self._pushes and not self.gathered and driver.push()
+                left = pushed or self.flush(until)
             elif carrier.delivery.coalesces and carrier.gathers(packet):
                 left = self._gather(now, until)
             else:
@@ -195,7 +198,7 @@ class Sender:
         driver = self.driver
         self._leaving = True
         try:
-            sent = driver.push() or driver.send(NOW)
+            sent = (self._pushes and driver.push()) or driver.send(NOW)
         except YarpError:  # nothing has left, nor will it
             self._leaving = False
             raise

@@ -41,21 +41,22 @@ def encode_body(
     key, forms = ("ros2", kind), packet.forms
     found: tuple[Buffer, ...] | None = forms.get(key)
     if found is None:
-        found = forms[key] = _encode(packet, kind, now)
+        value: Any = packet.value
+        if type(value) is kind and not packet.envelope:
+            found = value.to_ros()
+        else:
+            found = _encode(packet, kind, now)
+        forms[key] = found
     return found
 
 
 def _encode(packet: Packet, kind: type[Ros], now: Callable[[], float] | None) -> tuple[Buffer, ...]:
-    value = value_of(packet)
-    if type(value) is kind and not packet.envelope:
-        blocks: tuple[Buffer, ...] = value.to_ros()
-        return blocks
-    if type(value) is str:  # as `to_message`, without the steps to it
-        try:
-            return _stamped(kind.from_bottle(value).to_ros(), kind, packet.envelope, now)
-        except UNSENDABLE as error:
-            raise type(error)(f"{kind._type} is expected here: {error}") from None
+    value: Any = packet.value
     try:
+        if type(value) is str and kind._is_text:  # as `to_message`, without the steps to it
+            blocks: tuple[Buffer, ...] = kind(value).to_ros()
+            return blocks
+        value = value_of(packet)
         if isinstance(value, Ros):
             if (value._type, value._md5sum) == (kind._type, kind._md5sum):
                 return _stamped(value.to_ros(), kind, packet.envelope, None)
@@ -100,5 +101,7 @@ def message_of(
         said = _STAMP.unpack_from(body, _HEAD)
         if said[0] >= 0 and said[1] < _SECOND and any(said):
             seconds, nanoseconds = said
-    envelope = f"{number & 0x7FFFFFFF} {seconds}.{nanoseconds:09d}" if seconds >= 0 else ""
+    envelope = ""
+    if seconds >= 0:  # `%` is quicker than an f-string here
+        envelope = "%d %d.%09d" % (number & 0x7FFFFFFF, seconds, nanoseconds)  # noqa: UP031
     return RosMessage(key, body, kind, envelope)

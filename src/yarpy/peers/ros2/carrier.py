@@ -30,7 +30,7 @@ from yarpy.peers.ros2.qos import WORDS
 from yarpy.route import Route
 from yarpy.wire.message import CALL, DATA, UNSENDABLE, Encoded, Message, Packet
 from yarpy.wire.steps import Steps
-from yarpy.wire.stream import Buffer, ByteStream
+from yarpy.wire.stream import Buffer, ByteStream, ObjectStream
 
 log = logger("yarpy.link")
 
@@ -72,7 +72,7 @@ class Outgoing:
         failure: str = "",
     ) -> None:
         self.kind, self.body, self.time, self.to, self.failure = kind, body, time, to, failure
-        self.size = sum(map(len, body))
+        self.size = len(body[0]) if len(body) == 1 else sum(map(len, body))
 
 
 class Incoming:
@@ -127,15 +127,19 @@ class Ros2(Hosted):
         return True
 
     def encode(self, stream: ByteStream, packet: Packet) -> None:
-        try:
-            kind, body = self._body(packet)
+        topic = self.topic
+        assert topic is not None
+        try:  # as `_body`, spelled out
+            kind = topic.kind or topic.settle(value_of(packet))
+            body = encode_body(packet, kind, topic.clock)
         except UNSENDABLE as error:
             self._complain(str(error))
             self.lost += 1
             return
         self._told = ""
         when = time_of(packet) if packet.envelope else 0
-        self.write_object(stream, Outgoing(kind, body, when))
+        item: Any = Outgoing(kind, body, when)
+        stream.output.append(item)  # as `write_object`, spelled out
 
     def _body(self, packet: Packet) -> tuple[Any, tuple[Buffer, ...]]:
         topic = self.topic
@@ -157,16 +161,17 @@ class Subscriber(Ros2):
     push = False
 
     def parse(self, stream: ByteStream) -> Message | None:
-        came = self.come(stream)
-        return None if came is None else self._message(came)
-
-    def decode(self, stream: ByteStream) -> Steps[Message]:
-        return self._message((yield from self.read_object(stream)))
-
-    def _message(self, came: Incoming) -> Message:
+        assert isinstance(stream, ObjectStream)
+        if not stream.items:
+            return None
+        came: Any = stream.items.pop(0)
         topic = self.topic
         assert topic is not None
         kind = topic.kind
+        return message_of(DATA, came.body, kind, kind._has_header, came.number, came.time)
+
+    def decode(self, stream: ByteStream) -> Steps[Message]:
+        came, kind = (yield from self.read_object(stream)), self.kind
         return message_of(DATA, came.body, kind, kind._has_header, came.number, came.time)
 
 

@@ -6,6 +6,7 @@ from yarpy.peers.ros.message.model import (
     ListOf,
     Primitive,
     Struct,
+    has_arrays,
     parts,
     smallest,
 )
@@ -28,6 +29,16 @@ def test_parts_count_objects() -> None:
     assert parts(ListOf(PRIMITIVES["time"], 10)) == 11
     assert parts(ListOf(PAIR, 10)) == 31
     assert parts(ListOf(PAIR)) == 1
+
+
+def test_arrays_are_found_at_any_depth() -> None:
+    holder = Struct("Holder", (Field("inner", ListOf(Struct("Inner", (Field("x", FLOAT),)))),))
+    assert not PAIR.has_arrays and not holder.has_arrays
+    assert not has_arrays(ListOf(PRIMITIVES["time"], 10))
+    assert has_arrays(ListOf(FLOAT)) and has_arrays(ListOf(PRIMITIVES["uint8"], 16))
+    pose = Struct("Pose", (Field("covariance", ListOf(FLOAT, 36)),))
+    deep = Struct("Deep", (Field("poses", ListOf(pose)),))
+    assert deep.has_arrays and has_arrays(ListOf(deep, 2))
 
 
 def test_types_read_as_they_are_written() -> None:

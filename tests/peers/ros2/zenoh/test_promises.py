@@ -95,16 +95,16 @@ def test_what_is_lost_is_an_event(names: yarpy.LocalNames) -> None:
         made: Any = node.subscriber("/lost", TYPE, print, on_event=events.append)
         for number in (1, 2, 6):
             sample: Any = Sample()
-            sample.attachment = attachment(number, 1, bytes(16))
+            sample.attachment = zenoh.ZBytes(attachment(number, 1, bytes(16)))
             made._heard(sample)
         assert events == [("message_lost", 3, "")]
         assert made.events.counts["message_lost"] == 3
         # A publisher that flaps has another identity each time: the last ones are followed.
         for at in range(2 * MOST_PUBLISHERS):
             sample = Sample()
-            sample.attachment = attachment(1, 1, at.to_bytes(16, "big"))
+            sample.attachment = zenoh.ZBytes(attachment(1, 1, at.to_bytes(16, "big")))
             made._heard(sample)
         assert len(made._numbers) == MOST_PUBLISHERS
-        sample.attachment = attachment(4, 1, at.to_bytes(16, "big"))
+        sample.attachment = zenoh.ZBytes(attachment(4, 1, at.to_bytes(16, "big")))
         made._heard(sample)
         assert made.events.counts["message_lost"] == 5

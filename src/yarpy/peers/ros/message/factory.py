@@ -51,6 +51,7 @@ def make(
         "_names": names,
         "_used": dict(used),
         "_has_header": _begins_with_header(struct),
+        "_is_text": _is_text(struct),
         "_restore": staticmethod(restore),
         "to_bottle": to_bottle,
         "from_bottle": classmethod(from_bottle),
@@ -73,6 +74,11 @@ def make(
 def _begins_with_header(struct: Struct) -> bool:
     first = struct.fields[0].type if struct.fields else None
     return isinstance(first, Struct) and first.name == "std_msgs/Header"
+
+
+def _is_text(struct: Struct) -> bool:
+    kinds = [field.type for field in struct.fields]
+    return len(kinds) == 1 and isinstance(kinds[0], Primitive) and kinds[0].name == "string"
 
 
 class _Late:

@@ -98,6 +98,8 @@ class Message:
     _used: ClassVar[dict[Struct, type[Message]]]
     #: whether it begins with number and time
     _has_header: ClassVar[bool] = False
+    #: whether a string is its only field
+    _is_text: ClassVar[bool] = False
     _read: ClassVar[Callable[..., Any]]
     _write: ClassVar[Callable[..., Any]]
     #: makes a message of its type, full text and bytes, wherever it is unpickled

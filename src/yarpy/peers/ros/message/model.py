@@ -98,10 +98,13 @@ class Struct:
     #: the fewest bytes a value takes when packed, and how many values and structs it has then
     smallest: int = field(init=False)
     parts: int = field(init=False)
+    #: whether there are arrays of numbers in it, at any depth
+    has_arrays: bool = field(init=False)
 
     def __post_init__(self) -> None:
         self.smallest = sum(smallest(field.type) for field in self.fields)
         self.parts = 1 + sum(parts(field.type) for field in self.fields)
+        self.has_arrays = any(has_arrays(field.type) for field in self.fields)
 
     def __str__(self) -> str:
         return self.name
@@ -131,3 +134,13 @@ def parts(type_: Type) -> int:
         packed = isinstance(element, Primitive) and element.is_number
         return 1 if packed else 1 + type_.length * parts(element)
     return 1
+
+
+def has_arrays(type_: Type) -> bool:
+    """Return whether a value holds arrays of numbers, at any depth."""
+    if isinstance(type_, Struct):
+        return type_.has_arrays
+    if isinstance(type_, ListOf):
+        element = type_.element
+        return has_arrays(element) or (isinstance(element, Primitive) and element.is_number)
+    return False

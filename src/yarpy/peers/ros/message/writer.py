@@ -26,6 +26,7 @@ Write = Callable[[Any, Callable[[bytes | memoryview], None], int], int]
 
 _INLINE: Final = 100
 _COUNT: Final = 4
+_MISFITS: Final = (struct_error, TypeError, AttributeError, OverflowError, ValueError)
 
 
 def writer(struct: Struct, classes: Mapping[Struct, type[Message]]) -> Write:
@@ -37,11 +38,19 @@ def whole(struct: Struct, write: Write, head: bytes = b"") -> Callable[[Any], Bl
     """`to_ros` of a class. `head`: stands before each message."""
     before = [head] if head else []
 
+    def in_one_piece(self: Any) -> Blocks:
+        pieces: list[bytes | memoryview] = [*before]
+        try:
+            write(self, pieces.append, 0)
+        except _MISFITS as error:
+            raise fault(struct, self) or error from None
+        return (b"".join(pieces),)
+
     def to_ros(self: Any) -> Blocks:
         pieces: list[bytes | memoryview] = [*before]
         try:
             write(self, pieces.append, 0)
-        except (struct_error, TypeError, AttributeError, OverflowError, ValueError) as error:
+        except _MISFITS as error:
             raise fault(struct, self) or error from None
         kinds = [*map(type, pieces)]
         arrays = kinds.count(memoryview)
@@ -52,7 +61,7 @@ def whole(struct: Struct, write: Write, head: bytes = b"") -> Callable[[Any], Bl
             return b"".join(pieces), data
         return joined(pieces)
 
-    return to_ros
+    return to_ros if struct.has_arrays else in_one_piece
 
 
 def joined(pieces: list[bytes | memoryview]) -> Blocks:

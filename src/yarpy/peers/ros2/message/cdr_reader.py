@@ -26,6 +26,8 @@ from yarpy.peers.ros.message.model import Primitive, Struct, Type
 from yarpy.peers.ros.message.reader import SMALL, Read, Reader
 from yarpy.peers.ros2.message.cdr_plain import HEAD, is_other, plain
 
+_BEGIN: Final = HEAD[:2]
+_FEW: Final = 256
 _PADDING: Final = 3  # bytes that writers over DDS may leave behind a message
 
 
@@ -53,13 +55,15 @@ def reader(struct: Struct, classes: Mapping[Struct, type[Message]]) -> Read:
 
 def whole(struct: Struct, read: Read) -> Callable[[Buffer], Any]:
     """`from_ros` of a class: what `read` reads must be all of the bytes."""
-    name = struct.name
+    name, few = struct.name, 0 if struct.has_arrays else _FEW
 
     def from_ros(view: Buffer) -> Any:
-        if bytes(view[:2]) != HEAD[:2] or len(view) < 4:
+        size = len(view) - 4
+        if size < 0 or view[:2] != _BEGIN:
             view = _plain(struct, view)
-        body = memoryview(view)[4:]
-        size = len(body)
+            size = len(view) - 4
+        # A copy of a few bytes costs less than a view of each part of them.
+        body = view[4:] if size < few and type(view) is bytes else memoryview(view)[4:]
         try:
             found, end = read(body, 0, size, None if size <= SMALL else [])
         except struct_error:
@@ -90,11 +94,12 @@ def _plain(struct: Struct, view: Buffer) -> bytes:
 class _Reader(Reader):
     def __init__(self, classes: Mapping[Struct, type[Message]]) -> None:
         super().__init__(classes)
-        self.code.globals.update(_text=_text, _wide=_wide)
+        self.code.globals.update(_unended=_unended, _wide=_wide)
         self.alignment = Alignment()
 
     def text(self, path: str) -> str:
-        return f"_text(_b[_p:_e], {self.code.name(path)})"
+        self.code.line(f"if _e > _p and _b[_e - 1]: _unended({self.code.name(path)})")
+        return "_str(_b[_p:_e - 1], 'utf-8', 'surrogateescape')"
 
     def displaced(self) -> None:
         self.alignment.forget()
@@ -155,8 +160,6 @@ def _wide(view: memoryview, path: str) -> str:
     return units.decode("utf-16-le", "surrogatepass")
 
 
-def _text(view: memoryview, path: str) -> str:
-    """A string, whose last byte is a zero; some writers leave that out where it is empty."""
-    if view and view[-1]:
-        raise DecodeError(f"{path}: a string without its zero at the end")
-    return str(view[:-1], "utf-8", "surrogateescape")
+def _unended(path: str) -> None:
+    """Refuse a string whose last byte is no zero; some writers leave that out where it is empty."""
+    raise DecodeError(f"{path}: a string without its zero at the end")

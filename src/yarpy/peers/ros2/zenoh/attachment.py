@@ -16,6 +16,10 @@ from yarpy.errors import DecodeError
 GID_SIZE: Final = 16
 _LAYOUT: Final = Struct("<qqB16s")
 SIZE: Final = _LAYOUT.size
+#: what `attachment` and `parse_attachment` are made of, for what is done with each message
+PACK: Final = _LAYOUT.pack
+UNPACK: Final = _LAYOUT.unpack
+GID_SIZE_AT: Final = 16
 
 
 def attachment(number: int, time: int, gid: bytes) -> bytes:

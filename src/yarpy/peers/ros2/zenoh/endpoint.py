@@ -25,7 +25,7 @@ from yarpy.peers.ros2.mismatch import Mismatch
 from yarpy.peers.ros2.name import Node
 from yarpy.peers.ros2.qos import KEEP_ALL, Qos, promised
 from yarpy.peers.ros2.token import CLIENT, PUBLISHER, SERVER, SUBSCRIBER, Token, gid
-from yarpy.peers.ros2.zenoh.attachment import attachment, parse_attachment
+from yarpy.peers.ros2.zenoh.attachment import GID_SIZE, PACK, attachment, parse_attachment
 from yarpy.peers.ros2.zenoh.coalesced import Coalesced
 from yarpy.peers.ros2.zenoh.description import describe
 from yarpy.peers.ros2.zenoh.participant import Declared, Participant
@@ -228,7 +228,7 @@ class Publisher(Endpoint):
         self._count += 1
         body = item.body
         joined = None if len(body) == 1 else self._spare.join(body)
-        beside = attachment(self._count, item.time or time.time_ns(), self._gid)
+        beside = PACK(self._count, item.time or time.time_ns(), GID_SIZE, self._gid)
         self._publisher.put(body[0] if joined is None else joined, attachment=beside)
         if joined is not None:
             self._spare.give_back(joined)

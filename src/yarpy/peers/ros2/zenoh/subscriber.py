@@ -21,7 +21,13 @@ from yarpy.peers.ros2.event import MESSAGE, Event
 from yarpy.peers.ros2.key import Key
 from yarpy.peers.ros2.qos import PROFILES, promised
 from yarpy.peers.ros2.token import PUBLISHER, SUBSCRIBER, Token, gid
-from yarpy.peers.ros2.zenoh.attachment import parse_attachment
+from yarpy.peers.ros2.zenoh.attachment import (
+    GID_SIZE,
+    GID_SIZE_AT,
+    SIZE,
+    UNPACK,
+    parse_attachment,
+)
 from yarpy.peers.ros2.zenoh.coalesced import Coalesced
 from yarpy.peers.ros2.zenoh.endpoint import Endpoint
 from yarpy.peers.ros2.zenoh.firsts import Firsts
@@ -163,17 +169,11 @@ class Subscriber(Endpoint):
         attached = sample.attachment
         number, when = 0, 0
         if attached is not None:
-            data = bytes(attached)
-            try:
-                number, when, sender = parse_attachment(data)
-            except DecodeError as error:
-                if data == WAKE:
-                    return None
-                self.dropped += 1
-                if str(error) != self._refused:
-                    self._refused = str(error)
-                    log.warning("%s: a message of %s is lost: %s", self.port_name, self.name, error)
+            data = attached.to_bytes()
+            if len(data) != SIZE or data[GID_SIZE_AT] != GID_SIZE:
+                self._refuse(data)
                 return None
+            number, when, _, sender = UNPACK(data)  # as `parse_attachment`, spelled out
             before = self._numbers.get(sender)
             if before is None:
                 firsts = self._firsts
@@ -187,6 +187,18 @@ class Subscriber(Endpoint):
                 del self._numbers[next(iter(self._numbers))]  # one that flaps has many names
             self._numbers[sender] = number
         return Incoming(sample.payload.to_bytes(), number, when)
+
+    def _refuse(self, attached: bytes) -> None:
+        """Count a message whose attachment is none of ROS 2, unless it only wakes who waits."""
+        if attached == WAKE:
+            return
+        self.dropped += 1
+        try:
+            parse_attachment(attached)
+        except DecodeError as error:
+            if str(error) != self._refused:
+                self._refused = str(error)
+                log.warning("%s: a message of %s is lost: %s", self.port_name, self.name, error)
 
     # -- reading ----------------------------------------------------------------------------------
 

@@ -96,10 +96,8 @@ def _vector(element: Primitive, value: Any, path: str) -> Vector:
 def from_bottle(cls: type[M], items: Any) -> M:
     """The message of a list, of a dict with some of the fields, or of a single value where the
     type has a single field."""
-    if type(items) is str and len(cls._names) == 1:
-        kind = cls._definition.struct.fields[0].type
-        if type(kind) is Primitive and kind.name == "string":
-            return cls(items)  # as below
+    if cls._is_text and type(items) is str:
+        return cls(items)  # as below
     if isinstance(items, (str, int, float, bytes)) and cls._definition.struct.name not in TIMES:
         items = [items]
     found: M = _message(cls, items, cls._type)
