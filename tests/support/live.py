@@ -96,6 +96,8 @@ def hear(sock: socket.socket, count: int) -> bytes:
             part = sock.recv(count - len(data))
         except ConnectionResetError:  # it hung up before it had read what we said
             part = b""
+        except TimeoutError:
+            raise AssertionError(f"of {count} bytes only {data!r} came") from None
         if not part:
             break
         data += part
