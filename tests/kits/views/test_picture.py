@@ -15,7 +15,7 @@ from support.wait import HANG, wait_until
 
 import yarpy
 from yarpy.data.sig import jpeg
-from yarpy.kits.views.picture import Drops, Picture, visible
+from yarpy.kits.views.picture import Missing, Picture, visible
 
 RED = yarpy.Image(np.full((24, 32, 3), (200, 20, 20), "u1"))
 
@@ -39,6 +39,9 @@ def camera(names: yarpy.LocalNames, picture: Picture) -> Iterator[yarpy.Port]:
         yield port
 
 
+ALL = ("frames", "replaced", "drops")
+
+
 def arrived(picture: Picture, count: int) -> None:
     wait_until(lambda: picture.status()["frames"] == count)
 
@@ -54,7 +57,8 @@ def test_what_is_told(picture: Picture, camera: yarpy.Port) -> None:
     assert (told["width"], told["height"], told["pixel"], told["range"]) == (32, 24, "rgb", None)
     assert told["rate"] > 0
     assert 0 <= told["age"] < HANG
-    assert (told["dropped"], told["others"], told["complaint"]) == (0, 0, "")
+    assert (told["replaced"], told["drops"], told["others"]) == (0, 0, 0)
+    assert told["complaint"] == ""
     picture.wait_for("for the sun")
     assert picture.status()["waiting"] == "for the sun"
 
@@ -114,16 +118,16 @@ def test_damaged_pictures_of_a_camera_are_counted(picture: Picture, names: Any) 
         thread = threading.Thread(target=film)
         thread.start()
         picture.port.listen_to(f"/127.0.0.1:{listening.getsockname()[1]}", "mjpeg")
-        wait_until(lambda: picture.status()["frames"] + picture.status()["dropped"] >= 4)
+        wait_until(lambda: sum(picture.status()[key] for key in ALL) >= 4)
         told = picture.status()
-        assert told["dropped"] >= 2  # and one more if the first was not looked at in time
-        assert told["frames"] + told["dropped"] == 4
+        assert told["drops"] == 2  # of the others the first may not have been looked at in time
+        assert sum(told[key] for key in ALL) == 4
         assert (told["others"], told["complaint"]) == (0, "")
         done.set()
         thread.join(HANG)
 
 
-def test_drops_of_connections_that_have_gone() -> None:
+def test_what_is_missing_of_connections_that_have_gone() -> None:
     class Link:
         def __init__(self, since: float, drops: int) -> None:
             self.source = "/cam"
@@ -132,18 +136,19 @@ def test_drops_of_connections_that_have_gone() -> None:
     class Port:
         inputs: list[Link]
 
-    port, drops = Port(), Drops()
-    for links, total in (
-        ([Link(1.0, 2)], 2),
-        ([Link(1.0, 5)], 5),
-        ([], 5),
-        ([], 5),
-        ([Link(2.0, 1)], 6),
-        ([Link(2.0, 1), Link(3.0, 10)], 16),
-        ([Link(3.0, 11)], 17),
+    port, missing = Port(), Missing()
+    for links, total, lost in (
+        ([Link(1.0, 2)], 2, 1),
+        ([Link(1.0, 5)], 5, 1),
+        ([], 5, 1),
+        ([], 5, 1),
+        ([Link(2.0, 1)], 6, 2),
+        ([Link(2.0, 1), Link(3.0, 10)], 16, 3),
+        ([Link(3.0, 11)], 17, 3),
     ):
         port.inputs = links
-        assert drops.count(port) == total  # type: ignore[arg-type]
+        replaced, drops = missing.count(port)  # type: ignore[arg-type]
+        assert (replaced + drops, drops) == (total, lost)
 
 
 DEPTH = np.array([[0.5, 1.5], [np.nan, 2.5]], "f4")

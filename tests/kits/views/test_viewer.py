@@ -123,7 +123,7 @@ def test_pictures_and_what_is_told_of_them(browser: Browser) -> None:
         assert page.locator(".name").all_inner_texts() == ["/left", "/right"]
         assert page.title() == "/left /right - yarpy view"
         facts = page.locator(".facts")
-        reads(page, ".facts >> nth=1", r"^80 . 20 rgb · .* old · 0 dropped · from /cam/1 \(tcp\)$")
+        reads(page, ".facts >> nth=1", r"^80 . 20 rgb · .* old · 0 replaced · from /cam/1 \(tcp\)$")
         with filming(here.cameras[0], lambda n: plain(GREEN if n % 2 else RED), 15):
             reads(page, ".facts >> nth=0", r"· \d[.\d]*/s · ")
             reads(page, "#state", "^1 of 2 pictures moving$")

@@ -26,14 +26,14 @@ QUALITY: Final = 70  # of JPEG
 
 
 #: whose messages are looked at, and whether these are questions
-Way = tuple[str, bool]
+Attempt = tuple[str, bool]
 
 
 @dataclass(slots=True)
 class _Look:
     peek: Peek
     of: str  # whose messages they are, if not the port's own
-    ways: list[Way]  # that were not tried yet
+    attempts: list[Attempt]  # that were not tried yet
     asked: float = field(default_factory=time.monotonic)
     seen: tuple[float, int] = (0.0, 0)  # when messages were counted, and how many
     rate: float = 0.0
@@ -86,7 +86,7 @@ class Peeks:
     def _look(self, name: str, snapshot: Snapshot | None) -> _Look:
         with self._lock:
             found = self._looks.get(name)
-            if found is not None and not (found.ways and found.peek.ended):
+            if found is not None and not (found.attempts and found.peek.ended):
                 return found
             if snapshot is None:
                 raise yarpy.UnknownName("the ports are being asked: a moment, please")
@@ -96,14 +96,14 @@ class Peeks:
                 self._looks.pop(name).peek.close()
             elif len(self._looks) >= MOST:
                 raise yarpy.LocalProtocolError(f"{MOST} ports are looked at already: try later")
-            (seen, questions), *left = found.ways if found else _ways(name, snapshot)
+            (seen, questions), *left = found.attempts if found else _attempts(name, snapshot)
             peek = Peek(snapshot.ports[seen].contact, questions)
             of = f"from {seen}: " if seen != name else "questions: " if questions else ""
             self._looks[name] = _Look(peek, of, left)
             return self._looks[name]
 
 
-def _ways(name: str, snapshot: Snapshot) -> list[Way]:
+def _attempts(name: str, snapshot: Snapshot) -> list[Attempt]:
     """The ports that may show what passes through another, the likeliest first."""
     flows, ports = snapshot.flows.values(), snapshot.ports
     if any(flow.source == name for flow in flows):

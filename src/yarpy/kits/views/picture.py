@@ -10,6 +10,7 @@ from __future__ import annotations
 import threading
 import time
 from collections import deque
+from collections.abc import Iterable
 from typing import TYPE_CHECKING, Any, Final
 
 import yarpy
@@ -35,7 +36,7 @@ class Picture:
         self._kind: dict[str, Any] = {}
         self._others = 0
         self._complaint = ""
-        self._drops = Drops()
+        self._missing = Missing()
         threading.Thread(target=self._run, name=f"yarpy view {port.name}", daemon=True).start()
 
     def wait_for(self, line: str) -> None:
@@ -47,6 +48,7 @@ class Picture:
         now = time.monotonic()
         times = [moment for moment in tuple(self._times) if now - moment < MEMORY]
         span = times[-1] - times[0] if len(times) > 1 else 0.0
+        replaced, drops = self._missing.count(self.port)
         return {
             "name": self.port.name,
             "port": self.port.contact.port,
@@ -55,7 +57,8 @@ class Picture:
             "frames": self._frames,
             "rate": (len(times) - 1) / span if span else 0.0,
             "age": now - self._times[-1] if self._times else None,
-            "dropped": self._drops.count(self.port),
+            "replaced": replaced,
+            "drops": drops,
             "others": self._others,
             "complaint": self._complaint,
             **self._kind,
@@ -92,7 +95,7 @@ class Picture:
 
     def _show_newcomers(self) -> None:
         """Show the last picture to watchers that joined after it arrived."""
-        self._drops.count(self.port)
+        self._missing.count(self.port)
         new = any(not link.stats.messages for link in self.port.outputs)
         if self._newest is not None and new:
             self._write()
@@ -105,24 +108,31 @@ class Picture:
             pass  # the next read ends the loop
 
 
-class Drops:
-    """Messages that the inputs of a port left out, including inputs that are gone."""
+class Missing:
+    """Messages that the inputs of a port left out for newer ones, and those that they lost; inputs
+    that are gone count, too."""
 
     def __init__(self) -> None:
-        self._past = 0
-        self._present: dict[tuple[str, float], int] = {}
+        self._past = (0, 0)
+        self._present: dict[tuple[str, float], tuple[int, int]] = {}
         self._lock = threading.Lock()  # pages and the reader count
 
-    def count(self, port: yarpy.BufferedPort) -> int:
-        """The total so far."""
+    def count(self, port: yarpy.BufferedPort) -> tuple[int, int]:
+        """The totals so far: replaced, and dropped."""
         with self._lock:
             found = {}
             for link in port.inputs:
                 stats = link.stats
-                found[link.source, stats.since] = stats.replaced + stats.drops
-            self._past += sum(n for key, n in self._present.items() if key not in found)
+                found[link.source, stats.since] = stats.replaced, stats.drops
+            gone = [told for key, told in self._present.items() if key not in found]
+            self._past = _total([self._past, *gone])
             self._present = found
-            return self._past + sum(found.values())
+            return _total([self._past, *found.values()])
+
+
+def _total(told: Iterable[tuple[int, int]]) -> tuple[int, int]:
+    replaced, drops = zip(*told, strict=True)
+    return sum(replaced), sum(drops)
 
 
 def visible(image: yarpy.Image) -> tuple[yarpy.Image, tuple[float, float] | None]:

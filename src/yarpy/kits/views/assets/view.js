@@ -53,7 +53,8 @@ class Picture {
       facts.push(rate(info.rate));
       if (!this.paused && this.live.fps < 0.8 * info.rate) facts.push(`shown ${rate(this.live.fps)}`);
       facts.push(`${seconds(info.age)} old`);
-      facts.push(`${info.dropped} dropped`);
+      facts.push(`${info.replaced} replaced`);
+      if (info.drops) facts.push(`${info.drops} lost`);
     }
     const sources = info.sources.map((one) => `${one.name} (${one.carrier})`);
     if (sources.length) facts.push(`from ${sources.join(", ")}`);
