@@ -12,7 +12,6 @@ compared, and our log tells of other versions.
 
 from __future__ import annotations
 
-import threading
 from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
 from os import environ
@@ -28,6 +27,7 @@ from yarpy.peers.ros2.dds.watch import Watch
 from yarpy.peers.ros2.key import Key
 from yarpy.peers.ros2.message.library import hash_of
 from yarpy.peers.ros2.name import NOBODY, Node
+from yarpy.peers.ros2.pool import Pool
 from yarpy.peers.ros2.token import PUBLISHER, SUBSCRIBER, Token
 from yarpy.transports.bind import listening_host, reach
 
@@ -155,13 +155,17 @@ class Participant:
             if sample.sample_info.instance_state == self._alive:
                 yield sample
 
-    def close(self) -> None:
+    def end(self) -> None:
         """End it; everything in it is deleted."""
         self.watch.close()
         self.discovery.close()
         self.pump.close()
         delete(self.dds)
         self._leave_domain()
+
+    def ended(self) -> bool:
+        """Return False: it is there until it is ended."""
+        return False
 
     def _leave_domain(self) -> None:
         """Delete the domain, if we made it: the library refuses to make it twice."""
@@ -178,28 +182,4 @@ class Participant:
         return found
 
 
-class _Pool:
-    """The participants of this process, by domain."""
-
-    def __init__(self) -> None:
-        self._held: dict[int, Participant] = {}
-        self._lock = threading.RLock()
-
-    def take(self, domain: int) -> Participant:
-        with self._lock:
-            found = self._held.get(domain)
-            if found is None:
-                found = self._held[domain] = Participant(domain)
-            found.users += 1
-            return found
-
-    def leave(self, participant: Participant) -> None:
-        with self._lock:
-            participant.users -= 1
-            if participant.users:
-                return
-            del self._held[participant.number]
-        participant.close()
-
-
-POOL: Final = _Pool()
+POOL: Final = Pool(Participant)  # by domain

@@ -17,6 +17,7 @@ from yarpy.errors import UnknownPlugin
 from yarpy.log import logger
 from yarpy.peers.ros2.key import Key
 from yarpy.peers.ros2.name import Node
+from yarpy.peers.ros2.pool import Pool
 from yarpy.peers.ros2.qos import Qos
 from yarpy.peers.ros2.token import NODE, Token
 from yarpy.peers.ros2.zenoh.graph import Graph
@@ -131,47 +132,31 @@ class Participant:
         """One user less; the last one closes the session."""
         _POOL.leave(self)
 
+    def end(self) -> None:
+        """Give the session back."""
+        self._hearing.undeclare()
+        self.shared.close()
 
-class _Pool:
-    """The participants of this process, by domain and by where Zenoh is."""
-
-    def __init__(self) -> None:
-        self._held: dict[tuple[int, str], Participant] = {}
-        self._lock = threading.RLock()  # held while a session opens: a second one must not
-
-    def take(self, domain: int) -> Participant:
-        where = str(place(os.environ.get(CONFIGURATION, "")))
-        with self._lock:
-            found = self._held.get((domain, where))
-            if found is None or found.session.is_closed():
-                try:
-                    shared = share(where)
-                except UnknownPlugin as error:
-                    raise UnknownPlugin(f"{error}; for ROS 2: 'yarpy[ros2]'") from error
-                found = Participant(shared, Graph(domain))
-                found._hearing = found.graph.begin(shared.session)
-                self._held[domain, where] = found
-            found.users += 1
-            return found
-
-    def leave(self, participant: Participant) -> None:
-        with self._lock:
-            participant.users -= 1
-            if participant.users:
-                return
-            self._held = {key: item for key, item in self._held.items() if item is not participant}
-        participant._hearing.undeclare()
-        participant.shared.close()
-
-    def forget(self) -> None:
-        """In a forked process, which has no session."""
-        self._held, self._lock = {}, threading.RLock()
+    def ended(self) -> bool:
+        """Return whether the session is closed."""
+        return bool(self.session.is_closed())
 
 
-_POOL: Final = _Pool()
+def _begin(at: tuple[int, str]) -> Participant:
+    domain, where = at
+    try:
+        shared = share(where)
+    except UnknownPlugin as error:
+        raise UnknownPlugin(f"{error}; for ROS 2: 'yarpy[ros2]'") from error
+    found = Participant(shared, Graph(domain))
+    found._hearing = found.graph.begin(shared.session)
+    return found
+
+
+_POOL: Final = Pool(_begin)  # by domain and by where Zenoh is
 fork.after_in_child(_POOL.forget)
 
 
 def take_part(domain: int) -> Participant:
     """Our part in a domain; `close` gives it back. Raises as `share` does."""
-    return _POOL.take(domain)
+    return _POOL.take((domain, str(place(os.environ.get(CONFIGURATION, "")))))
