@@ -368,15 +368,15 @@ def test_the_core_asks_for_facts_and_not_for_names_of_carriers() -> None:
     assert wrong == []
 
 
-def test_every_thread_of_the_core_is_in_the_table() -> None:
-    """Of docs/internals.md, by the first word of its name."""
+def test_every_thread_is_in_a_table() -> None:
+    """Of docs/internals.md, by the first word of its name; those of commands live as long as the
+    command."""
     text = (ROOT / "docs" / "internals.md").read_text()
     told = set(re.findall(r"`yarpy (\w+)", text[text.index("## Threads") :]))
-    guests = {"kits", "peers", "cli", "testing"}
     names = {
         (relative(path), word)
         for path in FILES
-        if room(path).split(".")[0] not in guests
+        if room(path) not in ("cli", "testing")
         for word in re.findall(r'name ?= ?f?"yarpy (\w+)', path.read_text())
     }
     assert names and sorted(item for item in names if item[1] not in told) == []
@@ -397,6 +397,23 @@ def test_modules_say_what_they_are_for() -> None:
     """They begin with a docstring."""
     silent = [path for path in FILES if tree(path).body and not ast.get_docstring(tree(path))]
     assert [*map(relative, silent)] == []
+
+
+def test_files_that_comments_name_are_there() -> None:
+    """In backticks, from any folder above: of the file itself, of the rooms, of the checkout."""
+    wrong = []
+    for path in FILES:
+        roots = [
+            *(one for one in path.parents if one == SOURCE or SOURCE in one.parents),
+            TESTS,
+            ROOT,
+        ]
+        roots += [SOURCE / "kits", SOURCE / "peers"]
+        for number, line in enumerate(path.read_text("utf-8").splitlines(), 1):
+            for name in re.findall(r"`([\w./]+\.py)`", line):
+                if not any((root / name).exists() for root in roots):
+                    wrong.append(f"{relative(path)}:{number}: there is no {name}")
+    assert wrong == []
 
 
 def test_modules_have_their_test_files() -> None:

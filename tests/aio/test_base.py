@@ -50,7 +50,7 @@ def test_cancelled_opening_leaves_no_port_behind():
             assert not _open_ports()
 
     def _open_ports():
-        return [one for one in LOOP.entrances if one.name == "/aio/in"]
+        return [one for one in LOOP.listening if one.name == "/aio/in"]
 
     asyncio.run(main())
 

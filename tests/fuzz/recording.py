@@ -20,8 +20,8 @@ from support.recordings import START, STEP, episode, payload_of
 import yarpy
 from yarpy import record
 from yarpy.errors import YarpError
+from yarpy.kits.record.form.converter import Converter
 from yarpy.kits.record.form.form import Form
-from yarpy.kits.record.form.spell import Spell
 from yarpy.kits.record.kind import kind_of
 from yarpy.kits.record.lerobot.dataset import Plan, export
 from yarpy.kits.record.lerobot.layout import INFO
@@ -84,14 +84,14 @@ def _without_checksums(chunks: bool) -> bytes:
         for form in ("none", "stamp", "text")
     ]
     notes = writer.register_channel("yarpy.record", "json", 0)
-    spelled = [*_spelled()]
+    converted = [*_converted()]
     writer.add_attachment(START, START, "robot.ini", "text/plain", b"[group]")
     writer.add_metadata("yarpy", {"missed": '{"/a": 3}'})
     for n in range(8):
         front = b"\4\0\0\0text" if n % 3 == 2 else b""
         writer.add_message(forms[n % 3], START + n, front + payload_of([n]), START, n)
         writer.add_message(notes, START + n, b'{"what": "lost", "port": "/a", "count": 1}', START)
-    for n, (form, data) in enumerate(spelled):
+    for n, (form, data) in enumerate(converted):
         described = writer.register_schema(form.schema, form.schema_encoding, form.description)
         facts = {"port": "/a", "envelope": "text", "yarp.form": form.name, "kind": "yarp/any"}
         channel = writer.register_channel(f"/form{n}", form.encoding, described, facts)
@@ -100,12 +100,12 @@ def _without_checksums(chunks: bool) -> bytes:
     return file.getvalue()
 
 
-def _spelled() -> Iterator[tuple[Form, bytes]]:
+def _converted() -> Iterator[tuple[Form, bytes]]:
     """Yield a message of each form that others see."""
     picture = yarpy.Image(np.zeros((2, 3, 3), "u1"))
     for value in (picture, yarpy.Sound(np.zeros((2, 3), "i2")), yarpy.Vector([1.5]), [1, 2.5]):
         payload = payload_of(value)
-        found = Spell().spelled("/a", kind_of(payload), payload, START)
+        found = Converter().converted("/a", kind_of(payload), payload, START)
         assert found is not None
         yield found.form, b"".join(map(bytes, found.parts(b"text")))
 

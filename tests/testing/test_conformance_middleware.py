@@ -30,8 +30,8 @@ class TestWebSocket(MiddlewareConformance):
 class Deaf(Yarp):
     """Answers every question with the same."""
 
-    def server(self, way: Any, name: str, answer: Any) -> Any:
-        return super().server(way, name, lambda args, kwargs: answer(["always"], {}))
+    def server(self, binding: Any, name: str, answer: Any) -> Any:
+        return super().server(binding, name, lambda args, kwargs: answer(["always"], {}))
 
 
 def test_a_middleware_that_is_wrong_is_caught() -> None:

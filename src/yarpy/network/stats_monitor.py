@@ -32,9 +32,9 @@ class StatsMonitor:
             raise LocalProtocolError(
                 '"stats_monitor" works at the sender\'s end: connect with +send.stats_monitor'
             )
-        self._forward = _Way(place, place.source, place.target, Vocab("ok"))
+        self._forward = _Direction(place, place.source, place.target, Vocab("ok"))
         try:
-            self._backward = _Way(place, place.target, place.source, Vocab("fail"))
+            self._backward = _Direction(place, place.target, place.source, Vocab("fail"))
         except YarpError:
             self._forward.port.close()
             raise
@@ -50,8 +50,8 @@ class StatsMonitor:
 
     def _run(self) -> None:
         while not self._closed.wait(_PERIOD):
-            for way in (self._forward, self._backward):
-                way.tell()
+            for direction in (self._forward, self._backward):
+                direction.tell()
 
     def close(self) -> None:
         self._closed.set()
@@ -60,7 +60,7 @@ class StatsMonitor:
         self._backward.port.close()
 
 
-class _Way:
+class _Direction:
     """One direction."""
 
     def __init__(self, place: Place, source: str, target: str, forward: Vocab) -> None:

@@ -17,13 +17,13 @@ from typing import Any, ClassVar
 
 from yarpy.errors import PortClosed, RemoteError, Timeout, YarpError
 from yarpy.kits.wrap.middleware import (
+    Binding,
     Client,
     Failure,
     Item,
     Listener,
     Middleware,
     Publisher,
-    Way,
 )
 from yarpy.kits.wrap.value.shape import ANY
 
@@ -44,23 +44,23 @@ class MiddlewareConformance:
     values: ClassVar[Sequence[Any]] = ("text", {"angle": 45.5, "names": ["a", "b"]}, [1, 2.5, True])
     timeout: ClassVar[float] = 20.0
 
-    def way(self, topic: str = "", **options: Any) -> Way:
-        """Return one way, as a decorator makes it."""
+    def binding(self, topic: str = "", **options: Any) -> Binding:
+        """Return one binding, as a decorator makes it."""
         made = type(self).middleware()
-        return Way(topic or self.topic, made.name, self.place, **options)
+        return Binding(topic or self.topic, made.name, self.place, **options)
 
     def test_has_every_member(self) -> None:
         made = type(self).middleware()
         assert made.name
         for member in ("check", "publisher", "listener", "server", "client"):
             assert callable(getattr(made, member, None)), f"it has no {member}"
-        made.check(self.way())
-        made.check(self.way(self.service))
+        made.check(self.binding())
+        made.check(self.binding(self.service))
 
     def test_values_come_as_they_went(self) -> None:
         made = type(self).middleware()
-        listener = made.listener(self.way(keep="all"), ANY)
-        publisher = made.publisher(self.way(keep="all"), ANY)
+        listener = made.listener(self.binding(keep="all"), ANY)
+        publisher = made.publisher(self.binding(keep="all"), ANY)
         try:
             assert isinstance(publisher, Publisher) and isinstance(listener, Listener)
             for number, value in enumerate(self.values):
@@ -74,8 +74,8 @@ class MiddlewareConformance:
 
     def test_every_value_comes_in_order(self) -> None:
         made = type(self).middleware()
-        listener = made.listener(self.way(keep="all"), ANY)
-        publisher = made.publisher(self.way(keep="all", reliable=self._may_be_reliable()), ANY)
+        listener = made.listener(self.binding(keep="all"), ANY)
+        publisher = made.publisher(self.binding(keep="all", reliable=self._may_be_reliable()), ANY)
         try:
             self._sent(publisher, Item({"n": -1}, ANY), listener)
             for number in range(COUNT):
@@ -88,7 +88,7 @@ class MiddlewareConformance:
 
     def test_silence_is_a_timeout(self) -> None:
         made = type(self).middleware()
-        listener = made.listener(self.way("/suite/silent"), ANY)
+        listener = made.listener(self.binding("/suite/silent"), ANY)
         try:
             _raises(Timeout, lambda: listener.listen(0.05))
         finally:
@@ -96,7 +96,7 @@ class MiddlewareConformance:
 
     def test_close_wakes_who_listens(self) -> None:
         made = type(self).middleware()
-        listener = made.listener(self.way("/suite/closing"), ANY)
+        listener = made.listener(self.binding("/suite/closing"), ANY)
         ended: list[BaseException] = []
 
         def listen() -> None:
@@ -122,8 +122,8 @@ class MiddlewareConformance:
                 return Failure("ValueError", "too far")
             return Item({"args": args, "by": kwargs.get("by")})
 
-        server = made.server(self.way(self.service), "turn", answer)
-        client = made.client(self.way(self.service), ANY)
+        server = made.server(self.binding(self.service), "turn", answer)
+        client = made.client(self.binding(self.service), ANY)
         try:
             assert isinstance(client, Client)
             found = client.call("turn", ["left", 2.5], {"by": 1}, self.timeout)
@@ -137,7 +137,7 @@ class MiddlewareConformance:
 
     def test_nobody_answers(self) -> None:
         made = type(self).middleware()
-        client = made.client(self.way("/suite/nobody"), ANY)
+        client = made.client(self.binding("/suite/nobody"), ANY)
         try:
             begun = time.monotonic()
             _raises(YarpError, lambda: client.call("turn", [], {}, 0.3))
@@ -149,7 +149,7 @@ class MiddlewareConformance:
 
     def _may_be_reliable(self) -> bool:
         try:
-            type(self).middleware().check(self.way(reliable=True))
+            type(self).middleware().check(self.binding(reliable=True))
         except ValueError:
             return False
         return True

@@ -86,7 +86,7 @@ BE_CALLED: Final = "be called so"
 class May(Effect):
     """Ask whether the peer may do that here; the driver sends back why not, or "".
 
-    `link/admission.py` lists the rights, and there are HEAR, SEND_DATAGRAMS and BE_CALLED.
+    `link/begin/admission.py` lists the rights, and there are HEAR, SEND_DATAGRAMS and BE_CALLED.
     `asking`: the peer did not try to, so nothing is logged. `name`: what the peer calls itself.
     """
 

@@ -14,7 +14,7 @@ from yarpy import registry, wrap
 from yarpy.kits.wrap.flow import Inlets, Outlets
 from yarpy.kits.wrap.inbox import Inbox
 from yarpy.kits.wrap.method import Method, Output
-from yarpy.kits.wrap.middleware import Received, Way
+from yarpy.kits.wrap.middleware import Binding, Received
 
 
 class Air:
@@ -25,24 +25,24 @@ class Air:
     sent: list[Any] = []
     heard = True
 
-    def check(self, way: Way) -> None:
+    def check(self, binding: Binding) -> None:
         pass
 
-    def publisher(self, way: Way, shape: Any) -> Any:
-        return Voice(way)
+    def publisher(self, binding: Binding, shape: Any) -> Any:
+        return Voice(binding)
 
-    def listener(self, way: Way, shape: Any) -> Any:
-        return Ear(self.topics.setdefault(way.topic + way.place, Inbox("all")), way)
+    def listener(self, binding: Binding, shape: Any) -> Any:
+        return Ear(self.topics.setdefault(binding.topic + binding.place, Inbox("all")), binding)
 
 
 class Voice:
     stats = {"messages": 1}
 
-    def __init__(self, way: Way) -> None:
-        self.way = way
+    def __init__(self, binding: Binding) -> None:
+        self.binding = binding
 
     def publish(self, item: Any) -> int:
-        Air.sent.append((self.way.topic, item.form("x", lambda item: [item.plain]), item))
+        Air.sent.append((self.binding.topic, item.form("x", lambda item: [item.plain]), item))
         return 1
 
     def wait(self, timeout: float | None) -> bool:
@@ -55,12 +55,12 @@ class Voice:
 class Ear:
     stats = {"messages": 2}
 
-    def __init__(self, inbox: Inbox, way: Way) -> None:
-        self.inbox, self.way = inbox, way
+    def __init__(self, inbox: Inbox, binding: Binding) -> None:
+        self.inbox, self.binding = inbox, binding
 
     def listen(self, timeout: float | None) -> Received:
         found = self.inbox.take(timeout)
-        found.middleware = self.way.place
+        found.middleware = self.binding.place
         return found
 
     def close(self) -> None:

@@ -5,14 +5,14 @@ from __future__ import annotations
 import pytest
 
 import yarpy
-from yarpy.kits.wrap.middleware import Failure, Item, Received, Way, question_of
+from yarpy.kits.wrap.middleware import Binding, Failure, Item, Received, question_of
 
 
 def test_options_that_a_middleware_does_not_have_are_refused() -> None:
-    way = Way("/a", "pigeons", carrier="udp")
-    way.refuse(place="it has no place")
+    binding = Binding("/a", "pigeons", carrier="udp")
+    binding.refuse(place="it has no place")
     with pytest.raises(ValueError, match="carrier='udp' on pigeons: pigeons walk"):
-        way.refuse(carrier="pigeons walk")
+        binding.refuse(carrier="pigeons walk")
 
 
 def test_item_is_spelled_once_for_several_middlewares() -> None:

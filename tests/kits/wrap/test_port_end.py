@@ -8,14 +8,14 @@ import pytest
 from support.wait import HANG
 
 import yarpy
-from yarpy.kits.wrap.middleware import Way
+from yarpy.kits.wrap.middleware import Binding
 from yarpy.kits.wrap.port_end import PortEnd
 
 
 def test_reading_waiting_counting_closing() -> None:
     names = yarpy.LocalNames()
-    reader = PortEnd(yarpy.BufferedPort("/end/in", names=names), Way("/topic"))
-    writer = PortEnd(yarpy.BufferedPort("/end/out", names=names), Way("/topic"))
+    reader = PortEnd(yarpy.BufferedPort("/end/in", names=names), Binding("/topic"))
+    writer = PortEnd(yarpy.BufferedPort("/end/out", names=names), Binding("/topic"))
     try:
         assert not writer.wait(0.01)
         writer.port.connect("/end/in")

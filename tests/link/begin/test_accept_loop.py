@@ -48,14 +48,14 @@ def test_one_thread_for_all_ports(loop: AcceptLoop) -> None:
         assert thread is not None
         assert held.threads() - before == {thread}
         assert {one.thread_id for one in many} == {thread.native_id}
-        assert {one.name for one in loop.entrances} == {one.name for one in many}
+        assert {one.name for one in loop.listening} == {one.name for one in many}
         for one in many[::10]:
             assert ask(one.port) == b"some word"
         for one in many:
             one.close()
             with pytest.raises(ConnectionRefusedError):
                 ask(one.port)
-        assert loop.entrances == []
+        assert loop.listening == []
         thread.join(HANG)
         assert loop.thread is None
         assert many[0].thread_id == -1
@@ -111,7 +111,7 @@ def test_no_thread_no_port(loop: AcceptLoop, monkeypatch: pytest.MonkeyPatch) ->
         patch.setattr(threading.Thread, "start", fail)
         with pytest.raises(RuntimeError):
             Acceptor("/here", 0, echo)
-    assert loop.entrances == []
+    assert loop.listening == []
     one = Acceptor("/here", 0, echo)
     assert ask(one.port) == b"some word"
     one.close()

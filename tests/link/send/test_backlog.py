@@ -46,7 +46,7 @@ def test_who_is_quick_gets_everything_in_the_writers_thread() -> None:
 def test_it_leaves_at_once_though_another_thread_is_at_the_connection_for_a_moment(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
-    """As the sweeper of a burst."""
+    """As the flusher of a burst."""
     monkeypatch.setattr(backlog, "MOMENT", HANG)  # moments are long on a busy computer
     with connected(Held) as (link, far):
         taken = threading.Event()

@@ -40,18 +40,18 @@ def test_what_takes_waiting_comes_back_and_is_offered_again() -> None:
 
 
 @changes_a_constant
-def test_at_once_is_behind_the_sweeper_which_takes_no_longer_than_a_moment(
+def test_at_once_is_behind_the_flusher_which_takes_no_longer_than_a_moment(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
     monkeypatch.setattr(direct, "MOMENT", HANG)  # moments are long on a busy computer
     with connected(FastTcp) as (link, far):
         with at_work(link):
-            link.sender.sweeping = True
+            link.sender.draining = True
             later = threading.Thread(target=link.box.offer, args=(Packet([1]), NOW))
             later.start()
             time.sleep(0.02)
         later.join(HANG)
-        link.sender.sweeping = False
+        link.sender.draining = False
         assert total(link) == 1 and link.counter.drops == 0
         assert len(read_messages(far, 1, ack=False)) == 1
 

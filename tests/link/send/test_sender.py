@@ -26,8 +26,8 @@ from yarpy.carriers.own.unix_stream import UnixStream
 from yarpy.data.value import Vocab
 from yarpy.errors import LinkClosed
 from yarpy.link.ending import moment
+from yarpy.link.send.flusher import GATHER_SECONDS
 from yarpy.link.send.sender import BURST, LASTING, Sender
-from yarpy.link.send.sweeper import GATHER_SECONDS
 from yarpy.wire import framing
 from yarpy.wire.message import Packet
 
@@ -79,17 +79,17 @@ def test_burst_is_gathered_and_nothing_is_left_behind() -> None:
 
 
 @replaces_a_method
-def test_the_sweeper_leaves_the_processor_to_the_thread_that_sends(
+def test_the_flusher_leaves_the_processor_to_the_thread_that_sends(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
     tries: list[bool] = []
-    sweep = Sender.sweep
+    drain = Sender.drain
 
     def tried(sender: Sender, *limits: object) -> bool:
-        tries.append(sweep(sender, *limits))  # type: ignore[arg-type]
+        tries.append(drain(sender, *limits))  # type: ignore[arg-type]
         return tries[-1]
 
-    monkeypatch.setattr(Sender, "sweep", tried)
+    monkeypatch.setattr(Sender, "drain", tried)
     link, _ = open_link(FastTcp)
     began = time.monotonic()
     with link.sender.lock:
@@ -102,14 +102,14 @@ def test_the_sweeper_leaves_the_processor_to_the_thread_that_sends(
     link.close()
 
 
-def test_the_sweeper_sleeps_while_messages_leave_one_by_one() -> None:
+def test_the_flusher_sleeps_while_messages_leave_one_by_one() -> None:
     link, _ = open_link(FastTcp)
     sender = link.sender
     sender._gathered_since = time.perf_counter() - 1.0
     link.send(Packet([1]))
-    assert not sender._sweep_up()
+    assert not sender._drain_all()
     sender._gathered_since = time.perf_counter() + 1.0
-    assert sender._sweep_up()
+    assert sender._drain_all()
     link.close()
 
 
@@ -486,7 +486,7 @@ def test_at_once_to_one_that_has_gone() -> None:
             link.send(Packet([1]))
 
 
-def test_what_is_left_behind_the_end_has_no_sweeper() -> None:
+def test_what_is_left_behind_the_end_has_no_flusher() -> None:
     """A signal handler has closed the port while the frame beneath was about to gather."""
     link, _ = open_link(FastTcp)
     sender = link.sender
@@ -494,7 +494,7 @@ def test_what_is_left_behind_the_end_has_no_sweeper() -> None:
         sender.give_up()
         sender.halfway = True
         sender.follow()
-    name = f"yarpy sweep {link.route}"
+    name = f"yarpy flush {link.route}"
     wait_until(lambda: name not in [thread.name for thread in threading.enumerate()])
 
 

@@ -15,7 +15,7 @@ from support.wait import HANG, wait_until
 
 import yarpy
 from yarpy.kits import wrap
-from yarpy.kits.wrap.middleware import Way
+from yarpy.kits.wrap.middleware import Binding
 from yarpy.kits.wrap.value.hint import shape_of
 from yarpy.peers.ros2.middleware import target_of
 
@@ -78,7 +78,7 @@ def test_topics() -> None:
 
 
 def test_targets_and_what_is_refused() -> None:
-    target = target_of(Way("/camera/image", carrier="domain.7+node.me"), shape_of(Picture))
+    target = target_of(Binding("/camera/image", carrier="domain.7+node.me"), shape_of(Picture))
     assert target == "ros2+domain.7+node.me://camera/image~sensor_msgs/msg/Image"
     with pytest.raises(TypeError, match=r'"a": int64 in example_interfaces/.*says str'):
         wrap.on("/x~example_interfaces/srv/AddTwoInts", "ros2")(_wrong)

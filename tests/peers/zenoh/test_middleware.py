@@ -14,7 +14,7 @@ from support.wait import HANG, wait_until
 
 import yarpy
 from yarpy.kits import wrap
-from yarpy.kits.wrap.middleware import Way
+from yarpy.kits.wrap.middleware import Binding
 from yarpy.peers.zenoh import transport as sessions
 from yarpy.peers.zenoh.middleware import ZenohClient, key_of
 from yarpy.peers.zenoh.router import open_router
@@ -156,7 +156,7 @@ def test_a_server_that_is_slow(place: str) -> None:
 
 
 def test_keys() -> None:
-    assert key_of(Way("/arm/state/")) == "arm/state"
+    assert key_of(Binding("/arm/state/")) == "arm/state"
     for wrong in ("/", "a//b", "a/*"):
         with pytest.raises(ValueError, match="no key of Zenoh"):
-            key_of(Way(wrong))
+            key_of(Binding(wrong))

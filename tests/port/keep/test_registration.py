@@ -243,7 +243,7 @@ def test_port_that_cannot_be_opened_leaves_nothing_behind(call: str) -> None:
     for _ in range(2):
         with pytest.raises(NoNameServer):
             Port("/here", names=names)  # not: the name is in use
-    assert "/here" not in [one.name for one in LOOP.entrances]
+    assert "/here" not in [one.name for one in LOOP.listening]
     if call == "set":
         assert names.query("/here") is None
 

@@ -110,11 +110,11 @@ class Memory(Indexed):
         if (version := first[len(_WORD) :]) != VERSION:
             log.info("%s: %s", self.route, _versions(version))
             stream.write(framing.number(_PORTS + 1 + VERSION[0]))
-            return _Instead(self.route)
+            return _FallbackTcp(self.route)
         handle = yield Open("memory", listen=True, port=where)
         if handle is None:
             stream.write(framing.number(0))
-            return _Instead(self.route)
+            return _FallbackTcp(self.route)
         stream.write(framing.number(self.route.port))
         yield Switch(handle, SharedStream(handle, stream.limit))
         return None
@@ -218,7 +218,7 @@ def _versions(other: bytes) -> str:
     )
 
 
-class _Instead(Tcp):
+class _FallbackTcp(Tcp):
     """tcp, for a peer that has said already who it is."""
 
     def welcome(self, stream: ByteStream, first: bytes) -> Steps[None]:

@@ -14,7 +14,7 @@ for all watchers that want the same quality (`/?action=stream&quality=50&rate=10
 pictures are dropped and counted; browsers, which get their answer with the first message, are told
 that there are no pictures. The envelope is the comment in the JPEG file. Cameras may reorder,
 misspell or omit headers, or send in chunks; a damaged picture is dropped, and counted in `lost`. A
-camera that asks for a password is dialled again with the answer from login.py.
+camera that asks for a password is dialled again with the answer from `http/login.py`.
 """
 
 from __future__ import annotations

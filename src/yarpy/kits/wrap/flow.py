@@ -39,8 +39,8 @@ class Outlets:
             for output, shape in zip(outputs, self._shapes, strict=True):
                 row: list[Publisher] = []
                 self._publishers.append(row)
-                for way in output.ways(output.topic):
-                    row.append(middleware_of(way).publisher(way, shape))
+                for binding in output.bindings(output.topic):
+                    row.append(middleware_of(binding).publisher(binding, shape))
         except BaseException:
             self.close()
             raise
@@ -135,8 +135,8 @@ class Inlet:
         self._inbox: Inbox | None = None
         self._lock = threading.Lock()  # of the decision to read ahead
         try:
-            for way in output.ways(topic):
-                self._listeners.append(middleware_of(way).listener(way, shape))
+            for binding in output.bindings(topic):
+                self._listeners.append(middleware_of(binding).listener(binding, shape))
         except BaseException:
             self.close()
             raise

@@ -25,12 +25,12 @@ from typing import (
 from yarpy.errors import AddressError, DecodeError, LocalProtocolError
 from yarpy.kits.wrap.middleware import (
     ENCODINGS,
+    Binding,
     Encoding,
     Keep,
     Middleware,
     Parameter,
     Signature,
-    Way,
 )
 from yarpy.kits.wrap.value.hint import shape_of
 from yarpy.kits.wrap.value.shape import ANY, Shape
@@ -91,13 +91,13 @@ class Output:
         if not isinstance(self.qos, Qos | None):
             raise TypeError(f"qos={self.qos!r} is no Qos: say yarpy.Qos(...)")
 
-    def ways(self, topic: str, signature: Signature | None = None) -> list[Way]:
-        """Return the way of each middleware; `topic` is this output's topic or source."""
-        return [self._way(one, topic, signature) for one in self.middlewares]
+    def bindings(self, topic: str, signature: Signature | None = None) -> list[Binding]:
+        """Return the binding of each middleware; `topic` is this output's topic or source."""
+        return [self._binding(one, topic, signature) for one in self.middlewares]
 
-    def _way(self, middleware: str, topic: str, signature: Signature | None) -> Way:
+    def _binding(self, middleware: str, topic: str, signature: Signature | None) -> Binding:
         name, _, place = middleware.partition("://")
-        return Way(
+        return Binding(
             topic,
             name,
             place,
@@ -178,9 +178,9 @@ class Method:
         """One more decorator, above those that are there. Raises what cannot be."""
         names = [*self.signature.parameters]
         called = self.called(names[:1] in (["self"], ["cls"])) if self._read else None
-        for way in output.ways(output.topic, called):
+        for binding in output.bindings(output.topic, called):
             try:
-                middleware_of(way).check(way)
+                middleware_of(binding).check(binding)
             except (TypeError, ValueError) as error:
                 error.add_note(f"in the decorator of {self.qualname}")
                 raise
@@ -319,8 +319,8 @@ class Method:
         if changes:
             found = [replace(one, **_of(index, changes)) for index, one in enumerate(found)]
             for output in found:
-                for way in output.ways(output.topic):
-                    middleware_of(way).check(way)
+                for binding in output.bindings(output.topic):
+                    middleware_of(binding).check(binding)
         return [
             replace(
                 one,
@@ -362,7 +362,7 @@ def _kind(func: Callable[..., Any]) -> Kind:
     return "generator" if inspect.isgeneratorfunction(func) else "function"
 
 
-def middleware_of(way: Way) -> Middleware:
-    """The middleware that a way names. Raises UnknownPlugin."""
-    found: Middleware = middlewares.load(way.middleware)()
+def middleware_of(binding: Binding) -> Middleware:
+    """The middleware that a binding names. Raises UnknownPlugin."""
+    found: Middleware = middlewares.load(binding.middleware)()
     return found

@@ -2,11 +2,11 @@
 
     class Pigeons:
         name = "pigeons"
-        def check(self, way): ...                        ValueError for what it cannot do
-        def publisher(self, way, shape): ...             a Publisher
-        def listener(self, way, shape): ...              a Listener
-        def server(self, way, answer): ...               something to close
-        def client(self, way, shape): ...                a Client
+        def check(self, binding): ...                ValueError for what it cannot do
+        def publisher(self, binding, shape): ...     a Publisher
+        def listener(self, binding, shape): ...      a Listener
+        def server(self, binding, answer): ...       something to close
+        def client(self, binding, shape): ...        a Client
 
 Rules: a middleware of another package is found by the entry point group `yarpy.middlewares`, which
 names a class without parameters. Whatever waits takes a timeout in seconds, or None for none, and
@@ -59,7 +59,7 @@ class Signature:
 
 
 @dataclass(frozen=True, slots=True)
-class Way:
+class Binding:
     """One middleware for one value: where it goes, and how.
 
     place: what stands behind the name in "mqtt://broker:1883", or "".
@@ -88,7 +88,7 @@ class Way:
             raise ValueError('a port keeps "latest" or "all" of what comes')
 
 
-_PLAIN: Final = Way("")
+_PLAIN: Final = Binding("")
 _TEXT: Final = frozenset((str,))
 
 
@@ -210,15 +210,15 @@ class Server(Protocol):
 class Middleware(Protocol):
     name: str
 
-    def check(self, way: Way) -> None: ...
+    def check(self, binding: Binding) -> None: ...
 
-    def publisher(self, way: Way, shape: Shape) -> Publisher: ...
+    def publisher(self, binding: Binding, shape: Shape) -> Publisher: ...
 
-    def listener(self, way: Way, shape: Shape) -> Listener: ...
+    def listener(self, binding: Binding, shape: Shape) -> Listener: ...
 
-    def server(self, way: Way, name: str, answer: Answer) -> Server: ...
+    def server(self, binding: Binding, name: str, answer: Answer) -> Server: ...
 
-    def client(self, way: Way, shape: Shape) -> Client: ...
+    def client(self, binding: Binding, shape: Shape) -> Client: ...
 
 
 def question_of(value: Any) -> tuple[list[Any], dict[str, Any]]:

@@ -338,8 +338,8 @@ class Serve(Mode):
             self._loop = None
         self._servers: list[Server] = []
         try:
-            for way in outputs[0].ways(outputs[0].topic, method.called(self.bound)):
-                server = middleware_of(way).server(way, method.name, self.answer)
+            for binding in outputs[0].bindings(outputs[0].topic, method.called(self.bound)):
+                server = middleware_of(binding).server(binding, method.name, self.answer)
                 self._servers.append(server)
         except BaseException:
             self.close()
@@ -400,8 +400,8 @@ class Call(Mode):
     def __init__(self, method: Method, instance: Any, outputs: Sequence[Output]) -> None:
         super().__init__(method, instance, outputs)
         self._exact = method.exact(self.bound)
-        way = outputs[0].ways(outputs[0].topic, method.called(self.bound))[0]
-        self._client: Client = middleware_of(way).client(way, method.result)
+        binding = outputs[0].bindings(outputs[0].topic, method.called(self.bound))[0]
+        self._client: Client = middleware_of(binding).client(binding, method.result)
         self._pool: ThreadPoolExecutor | None = None
 
     def run(self, func: Function, args: tuple[Any, ...], kwargs: dict[str, Any]) -> Any:

@@ -7,7 +7,7 @@ nothing else passes.
 
 from __future__ import annotations
 
-from yarpy.kits.wrap.middleware import Way
+from yarpy.kits.wrap.middleware import Binding
 from yarpy.kits.wrap.yarp import Yarp
 
 
@@ -17,6 +17,6 @@ class WebSocket(Yarp):
     name = "websocket"
     carrier = "websocket"
 
-    def check(self, way: Way) -> None:
-        super().check(way)
-        way.refuse(carrier="it is websocket")
+    def check(self, binding: Binding) -> None:
+        super().check(binding)
+        binding.refuse(carrier="it is websocket")

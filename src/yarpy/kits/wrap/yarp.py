@@ -1,8 +1,8 @@
 """YARP: a publisher is a port with the topic's name, and a server is one that answers.
 
 Rules: any program of YARP takes part, in C++ too: what it can understand is sent in its types
-(`spelling.py`), and its questions are Bottles, `look 1.0`. A listener waits for a topic that is not
-there yet, and finds one again that was restarted.
+(`value/spelling.py`), and its questions are Bottles, `look 1.0`. A listener waits for a topic that
+is not there yet, and finds one again that was restarted.
 """
 
 from __future__ import annotations
@@ -14,7 +14,7 @@ from typing import Any
 
 from yarpy.errors import DecodeError, LinkClosed, UnknownName, YarpError
 from yarpy.kits.wrap.follower import Follower
-from yarpy.kits.wrap.middleware import Answer, Failure, Item, Received, Way, question_of
+from yarpy.kits.wrap.middleware import Answer, Binding, Failure, Item, Received, question_of
 from yarpy.kits.wrap.port_end import PortEnd
 from yarpy.kits.wrap.value.shape import Shape
 from yarpy.kits.wrap.value.spelling import (
@@ -44,34 +44,36 @@ class Yarp:
     name = "yarp"
     carrier = "tcp"
 
-    def check(self, way: Way) -> None:
-        way.refuse(place="names lead to ports; the name server is configured, see docs/names.md")
-        way.refuse_numbers()
-        if not way.topic.startswith("/"):
-            raise ValueError(f'"{way.topic}" is no name of a port: it begins with a slash')
-        if way.carrier:
-            asked_carrier(parse_carrier(way.carrier))
+    def check(self, binding: Binding) -> None:
+        binding.refuse(
+            place="names lead to ports; the name server is configured, see docs/names.md"
+        )
+        binding.refuse_numbers()
+        if not binding.topic.startswith("/"):
+            raise ValueError(f'"{binding.topic}" is no name of a port: it begins with a slash')
+        if binding.carrier:
+            asked_carrier(parse_carrier(binding.carrier))
 
-    def publisher(self, way: Way, shape: Shape) -> PortPublisher:
-        port = BufferedPort(way.topic, strict=way.keep == "all")
-        if way.qos is not None:
-            _give(port, way.qos)
-        return PortPublisher(port, way, shape)
+    def publisher(self, binding: Binding, shape: Shape) -> PortPublisher:
+        port = BufferedPort(binding.topic, strict=binding.keep == "all")
+        if binding.qos is not None:
+            _give(port, binding.qos)
+        return PortPublisher(port, binding, shape)
 
-    def listener(self, way: Way, shape: Shape) -> PortListener:
-        port = BufferedPort("", strict=way.keep == "all")
+    def listener(self, binding: Binding, shape: Shape) -> PortListener:
+        port = BufferedPort("", strict=binding.keep == "all")
         try:
-            follower = Follower(port, way.topic, way.carrier or self.carrier, way.qos)
+            follower = Follower(port, binding.topic, binding.carrier or self.carrier, binding.qos)
         except YarpError:
             port.close()
             raise
-        return PortListener(port, way, shape, follower)
+        return PortListener(port, binding, shape, follower)
 
-    def server(self, way: Way, name: str, answer: Answer) -> RpcServer:
-        return RpcServer(way.topic, PortServer(name, answer, way))
+    def server(self, binding: Binding, name: str, answer: Answer) -> RpcServer:
+        return RpcServer(binding.topic, PortServer(name, answer, binding))
 
-    def client(self, way: Way, shape: Shape) -> PortClient:
-        return PortClient(way, shape, way.carrier or self.carrier)
+    def client(self, binding: Binding, shape: Shape) -> PortClient:
+        return PortClient(binding, shape, binding.carrier or self.carrier)
 
 
 def _give(port: BufferedPort, qos: Qos) -> None:
@@ -89,10 +91,10 @@ def _give(port: BufferedPort, qos: Qos) -> None:
 class PortPublisher(PortEnd):
     """Writes to a port of its own."""
 
-    def __init__(self, port: BufferedPort, way: Way, shape: Shape) -> None:
-        super().__init__(port, way)
-        self._name = way.encoding
-        self._form = form_of(way.encoding, shape)
+    def __init__(self, port: BufferedPort, binding: Binding, shape: Shape) -> None:
+        super().__init__(port, binding)
+        self._name = binding.encoding
+        self._form = form_of(binding.encoding, shape)
         self._write = port.write
 
     def publish(self, item: Item) -> int:
@@ -105,15 +107,15 @@ class PortListener(PortEnd):
     """Reads a port of its own, which follows the topic."""
 
     def __init__(
-        self, port: BufferedPort, way: Way, shape: Shape, follower: Follower | None = None
+        self, port: BufferedPort, binding: Binding, shape: Shape, follower: Follower | None = None
     ) -> None:
-        super().__init__(port, way)
+        super().__init__(port, binding)
         self._shape = shape
         self._follower = follower
 
     def listen(self, timeout: float | None) -> Received:
         found = received(self.read(timeout), self._shape)
-        found.middleware = self.way.middleware
+        found.middleware = self.binding.middleware
         return found
 
     def close(self) -> None:
@@ -125,10 +127,10 @@ class PortListener(PortEnd):
 class PortServer:
     """A handler for an RpcServer: decodes a message to arguments, and encodes the result."""
 
-    def __init__(self, name: str, answer: Answer, way: Way) -> None:
+    def __init__(self, name: str, answer: Answer, binding: Binding) -> None:
         self._name = name
         self._answer = answer
-        self._form = FORMS[way.encoding]
+        self._form = FORMS[binding.encoding]
 
     def __call__(self, message: Message) -> Any:
         value = message.value
@@ -154,8 +156,8 @@ class PortServer:
 class PortClient:
     """Asks a server; several questions at a time take several connections."""
 
-    def __init__(self, way: Way, shape: Shape, carrier: str) -> None:
-        self._way = way
+    def __init__(self, binding: Binding, shape: Shape, carrier: str) -> None:
+        self._binding = binding
         self._shape = shape
         self._exact = None if shape.exact is list else shape.exact  # failures are lists, too
         self._carrier = carrier
@@ -180,7 +182,7 @@ class PortClient:
         if self._closed:
             self.close()
         if message is None:
-            raise LinkClosed(f'"{self._way.topic}" gave no answer')
+            raise LinkClosed(f'"{self._binding.topic}" gave no answer')
         value = message.value
         if type(value) is self._exact:
             return value
@@ -194,7 +196,7 @@ class PortClient:
         pause = 0.02
         while True:
             try:
-                return RpcClient(self._way.topic, carrier=self._carrier)
+                return RpcClient(self._binding.topic, carrier=self._carrier)
             except (UnknownName, LinkClosed):
                 if deadline is None or time.monotonic() + pause > deadline:
                     raise

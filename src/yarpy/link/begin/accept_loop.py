@@ -26,7 +26,7 @@ BRAKE: Final = 0.1  # seconds of rest after a failure, which might come again an
 _SEES_MORE: Final = selectors.DefaultSelector.__name__ in ("EpollSelector", "KqueueSelector")
 
 
-class Entrance(Protocol):
+class ListeningPort(Protocol):
     """The listening socket of one port, and what to do with its connections. It is called in the
     loop's thread only."""
 
@@ -45,7 +45,7 @@ class Entrance(Protocol):
 
 
 class AcceptLoop:
-    """Watches the sockets of entrances. `enter` may be called by any thread, the rest by those that
+    """Watches the sockets of ports. `enter` may be called by any thread, the rest by those that
     the loop calls."""
 
     def __init__(self) -> None:
@@ -58,42 +58,42 @@ class AcceptLoop:
         """Forget everything, in a process whose threads are gone: a forked one."""
         self._stop()
         self._lock = threading.RLock()  # of who is here, and whether there is a thread
-        self._entrances: set[Entrance] = set()
-        self._due: dict[Entrance, float] = {}  # when `look` is to be called
-        self._newcomers: deque[tuple[socket.socket, Entrance]] = deque()
+        self._listening: set[ListeningPort] = set()
+        self._due: dict[ListeningPort, float] = {}  # when `look` is to be called
+        self._newcomers: deque[tuple[socket.socket, ListeningPort]] = deque()
 
     @property
-    def entrances(self) -> list[Entrance]:
+    def listening(self) -> list[ListeningPort]:
         """All that are watched."""
         with self._lock:
-            return list(self._entrances)
+            return list(self._listening)
 
-    def enter(self, sock: socket.socket, entrance: Entrance) -> None:
-        """Watch the listening socket of a new entrance."""
+    def enter(self, sock: socket.socket, port: ListeningPort) -> None:
+        """Watch the listening socket of a new port."""
         with self._lock:
             if self.thread is None:
                 self._start()
-            self._entrances.add(entrance)
+            self._listening.add(port)
             if self._waker is None:
-                self.watch(sock, entrance)
+                self.watch(sock, port)
             else:
-                self._newcomers.append((sock, entrance))
+                self._newcomers.append((sock, port))
                 self._waker[1].send(b"\0")
 
-    def watch(self, sock: socket.socket, entrance: Entrance) -> None:
-        """From now on `entrance.ready` is called when there is something to read."""
+    def watch(self, sock: socket.socket, port: ListeningPort) -> None:
+        """From now on `port.ready` is called when there is something to read."""
         assert self._selector is not None
-        self._selector.register(sock, selectors.EVENT_READ, entrance)
+        self._selector.register(sock, selectors.EVENT_READ, port)
 
     def forget(self, sock: socket.socket) -> None:
         """Watch it no longer; it must still be open."""
         assert self._selector is not None
         self._selector.unregister(sock)
 
-    def leave(self, entrance: Entrance) -> None:
+    def leave(self, port: ListeningPort) -> None:
         """It has no sockets any more."""
         with self._lock:
-            self._entrances.discard(entrance)
+            self._listening.discard(port)
 
     # -- the thread -------------------------------------------------------------------------------
 
@@ -126,20 +126,20 @@ class AcceptLoop:
                     assert isinstance(key.fileobj, socket.socket)
                     self._call(key.data, key.data.ready, key.fileobj)
             now = time.monotonic()
-            for entrance in [one for one, due in self._due.items() if due <= now]:
-                self._call(entrance, entrance.look)
+            for port in [one for one, due in self._due.items() if due <= now]:
+                self._call(port, port.look)
 
     def _is_over(self, selector: selectors.BaseSelector) -> bool:
         """Return whether no port is left; then the thread with that selector is no longer the
         accepting one."""
-        if self._entrances and self._selector is selector:
+        if self._listening and self._selector is selector:
             return False
         with self._lock:
             if self._selector is not selector:
                 return True
-            if not self._entrances:
+            if not self._listening:
                 self._stop()
-            return not self._entrances
+            return not self._listening
 
     def _until_due(self) -> float | None:
         if not self._due:
@@ -152,18 +152,18 @@ class AcceptLoop:
         self._waker[0].recv(1)
         self.watch(*self._newcomers.popleft())
 
-    def _call(self, entrance: Entrance, act: Callable[..., None], *arguments: object) -> None:
+    def _call(self, port: ListeningPort, act: Callable[..., None], *arguments: object) -> None:
         try:
             act(*arguments)
-            left = entrance.left()
+            left = port.left()
         except Exception:
-            log.exception("%s: a connection could not be accepted", entrance.name)
+            log.exception("%s: a connection could not be accepted", port.name)
             time.sleep(BRAKE)
             left = BRAKE
         if left is None:
-            self._due.pop(entrance, None)
+            self._due.pop(port, None)
         else:
-            self._due[entrance] = time.monotonic() + left
+            self._due[port] = time.monotonic() + left
 
 
 LOOP: Final = AcceptLoop()

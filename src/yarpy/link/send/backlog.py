@@ -40,7 +40,7 @@ class Backlog(Outbox):
             sender.counter.drops += 1
             raise sender.gone()
         if not queue.pending:
-            # Another thread that does something short under the lock, as the sweeper of a burst.
+            # Another thread that does something short under the lock, as the flusher of a burst.
             hold = Hold(sender, NOW if sender.halfway else time.monotonic() + MOMENT)
             try:
                 sent = sender.transmit(packet, NOW) if hold.take() else NOTHING

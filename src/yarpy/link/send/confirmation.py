@@ -17,7 +17,7 @@ RECENT: Final = 1024  # messages whose place in the stream of bytes is remembere
 
 
 @dataclass(frozen=True, slots=True)
-class Fate:
+class Outcome:
     """The outcome of messages: how many are known to have arrived or to be lost; the rest is
     open."""
 
@@ -52,22 +52,22 @@ class Confirmation:
         self._asked = left
         self._came = came
 
-    def fate(self, left: int, in_order: bool) -> Fate:
+    def outcome(self, left: int, in_order: bool) -> Outcome:
         """Of `left` messages, by what the receiver says; all came if nobody can ask it.
 
         `in_order`: what has not come waits for the one before it, as in a stream; else it is lost.
         """
         if not self.witness:
-            return Fate(left, 0, 0)
+            return Outcome(left, 0, 0)
         came = min(self._came, left)
         lost = 0 if in_order else max(0, min(self._settled, left) - came)
-        return Fate(came, lost, left - came - lost)
+        return Outcome(came, lost, left - came - lost)
 
-    def end(self, left: int, taken: int) -> Fate:
+    def end(self, left: int, taken: int) -> Outcome:
         """Of `left` messages in a stream that has ended, when the peer's system had confirmed
         `taken` bytes, whether or not its program has read them."""
-        came = min(self.fate(left, True).came, left - self._behind(left, taken))
-        return Fate(came, 0, left - came)
+        came = min(self.outcome(left, True).came, left - self._behind(left, taken))
+        return Outcome(came, 0, left - came)
 
     def _behind(self, left: int, taken: int) -> int:
         """Return how many of `left` messages do not end within so many bytes."""

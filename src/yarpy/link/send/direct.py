@@ -56,7 +56,7 @@ class Direct(Outbox):
         limit = sender.slow.limit_of(limit)
         hold = Hold(sender, limit, self._ending)
         try:
-            if not hold.take() and sender.sweeping:  # which takes no longer than a moment
+            if not hold.take() and sender.draining:  # which takes no longer than a moment
                 hold = Hold(sender, time.monotonic() + MOMENT, self._ending)
                 hold.take()
             sent = sender.transmit(packet, limit) if hold.held else NOTHING

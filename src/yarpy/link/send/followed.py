@@ -79,7 +79,7 @@ class Followed(Direct):
         """Return whether the system at the other end has all bytes."""
         sender, driver, pause = self.sender, self.sender.driver, _SOON
         while not sender.broken:
-            sender.sweep(NOW)
+            sender.drain(NOW)
             taken = driver.transport.taken(driver.bytes_out, driver.bytes_in)
             if taken is None:
                 return False

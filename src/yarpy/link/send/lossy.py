@@ -2,7 +2,7 @@
 
 Rules: a message that comes while the one before is still on its way is not sent, before any work is
 done on it, and counts as `replaced`. It leaves in the writer's thread as far as it goes without
-waiting; the sweeper sends the rest, and nothing else begins before it has left. People look at it,
+waiting; the flusher sends the rest, and nothing else begins before it has left. People look at it,
 or its text takes long to make: then a thread of the connection sends, a few messages behind and so
 often as the carrier says.
 

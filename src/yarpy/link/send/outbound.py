@@ -206,7 +206,7 @@ class Outbound:
         """Wait until everything handed over was sent; return False if `until` comes first, or the
         `ending`."""
         queue = self._queue
-        return (queue is None or queue.wait_empty(until, ending)) and self.sender.sweep(
+        return (queue is None or queue.wait_empty(until, ending)) and self.sender.drain(
             until, ending
         )
 
@@ -423,8 +423,8 @@ class Outbound:
         found["messages"] -= self.carrier.lost + self.carrier.unwanted
         found["drops"] += self.carrier.lost
         if not (self.carrier.acks or self.broken):
-            fate = sender.fate
-            found["messages"] -= fate.lost
-            found["drops"] += fate.lost
-            found["unacknowledged"] = fate.open
+            outcome = sender.outcome
+            found["messages"] -= outcome.lost
+            found["drops"] += outcome.lost
+            found["unacknowledged"] = outcome.open
         return found

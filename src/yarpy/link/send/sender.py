@@ -19,9 +19,9 @@ from typing import TYPE_CHECKING, Any, Final
 from yarpy.errors import LinkClosed, YarpError
 from yarpy.link.counter import Counter
 from yarpy.link.ending import NEVER, NOW, Ending
-from yarpy.link.send.confirmation import Confirmation, Fate
+from yarpy.link.send.confirmation import Confirmation, Outcome
+from yarpy.link.send.flusher import GATHER_SECONDS, Flusher
 from yarpy.link.send.slow_reader import SlowReader
-from yarpy.link.send.sweeper import GATHER_SECONDS, Sweeper
 from yarpy.link.send.window import ASK_EVERY, Window
 from yarpy.wire.message import Packet, is_unsent
 
@@ -93,8 +93,8 @@ class Sender:
         self._leaving = False  # they are being sent, or were when a signal handler raised
         self._gathered_since = 0.0
         self._gathered_bytes = self._pieces = 0  # of those, without acknowledgements
-        self._sweeper: Sweeper | None = None
-        self.sweeping = False  # it is at work, and may have the lock
+        self._flusher: Flusher | None = None
+        self.draining = False  # it is at work, and may have the lock
 
     def obey(self, ending: Ending) -> None:
         """From now on whoever waits here goes on, or not, as the port's `ending` says."""
@@ -170,7 +170,10 @@ class Sender:
                 and window.note(now)
                 and not (self.halfway or self.broken)
             ):
-                window.look(until)
+                if window.open >= window.size:
+                    self.wait(window.look, until)
+                else:
+                    window.look(until)
                 self._left = time.perf_counter()
         except BaseException as error:
             if interrupts(error):
@@ -351,15 +354,15 @@ class Sender:
     # -- what others leave behind -----------------------------------------------------------------
 
     def _watch(self) -> None:
-        """Let the sweeper send what is left in the stream."""
-        if self._sweeper is None:
-            self._sweeper = Sweeper(f"yarpy sweep {self.route}", self._sweep_up)
+        """Let the flusher send what is left in the stream."""
+        if self._flusher is None:
+            self._flusher = Flusher(f"yarpy flush {self.route}", self._drain_all)
         if self.broken:  # a signal handler has ended the connection meanwhile
-            self._sweeper.stop()
+            self._flusher.stop()
         else:
-            self._sweeper.watch()
+            self._flusher.watch()
 
-    def sweep(self, until: float | None = None, ending: Ending = NEVER) -> bool:
+    def drain(self, until: float | None = None, ending: Ending = NEVER) -> bool:
         """Send what a burst left behind; return False if `until` comes first."""
         hold = Hold(self, self.slow.limit_of(until), ending)
         try:
@@ -374,13 +377,13 @@ class Sender:
             self.cut()
         return done
 
-    def _sweep_up(self) -> bool:
-        """Sweep for the sweeper: whether the burst may still go on. The lock is held for moments:
+    def _drain_all(self) -> bool:
+        """Drain for the flusher: whether the burst may still go on. The lock is held for moments:
         writers have limits of their own."""
         while (self.halfway or self.gathered) and not self.broken:
-            self.sweeping = True
-            done = self.sweep(NOW)
-            self.sweeping = False
+            self.draining = True
+            done = self.drain(NOW)
+            self.draining = False
             if done:
                 break
             if self.halfway:
@@ -438,18 +441,20 @@ class Sender:
         self.gathered = 0  # else looking for acknowledgements would send them now
         if self.carrier.acks:
             self._take_last_acks()
-            fate = Fate(0, 0, max(window.open - never_left, 0))
+            outcome = Outcome(0, 0, max(window.open - never_left, 0))
         else:
             self.confirmation.recall(never_left)
             driver, left = self.driver, counter.messages - never_left
             taken = driver.transport.taken(driver.bytes_out, driver.bytes_in)
-            fate = self._fate(left) if taken is None else self.confirmation.end(left, taken[0])
+            outcome = (
+                self._outcome(left) if taken is None else self.confirmation.end(left, taken[0])
+            )
         # In one step for signals: nothing is counted twice.
         self._judged = True
         window.open = 0
-        counter.messages -= never_left + fate.lost + fate.open
-        counter.drops += never_left + fate.lost
-        counter.unconfirmed += fate.open
+        counter.messages -= never_left + outcome.lost + outcome.open
+        counter.drops += never_left + outcome.lost
+        counter.unconfirmed += outcome.open
 
     def _take_last_acks(self) -> None:
         """Those that came before the end, unless another thread reads them."""
@@ -463,13 +468,13 @@ class Sender:
             hold.give()
 
     @property
-    def fate(self) -> Fate:
+    def outcome(self) -> Outcome:
         """Return the known outcome of the messages of a carrier without acknowledgements."""
-        return self._fate(self.counter.messages - self.gathered)
+        return self._outcome(self.counter.messages - self.gathered)
 
-    def _fate(self, left: int) -> Fate:
+    def _outcome(self, left: int) -> Outcome:
         in_order = not self.carrier.delivery.connectionless
-        return self.confirmation.fate(left, in_order)
+        return self.confirmation.outcome(left, in_order)
 
     def cut(self) -> LinkClosed:
         """End the connection to a reader that does not read; return the error that says so."""
@@ -493,8 +498,8 @@ class Sender:
     def end(self) -> None:
         """Nothing is sent any more."""
         self.broken = True
-        if self._sweeper is not None:
-            self._sweeper.stop()
+        if self._flusher is not None:
+            self._flusher.stop()
         if self.carrier.delivery.attentive:
             self.driver.transport.interrupt()  # wakes the thread that listens
         self.driver.transport.close()

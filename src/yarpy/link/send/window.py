@@ -97,10 +97,10 @@ class Window:
         self._fall_mute(limit)
         return True
 
-    def look(self, until: float | None) -> None:
+    def look(self, until: float | None) -> bool:
         """Take in what has come; when the window is full, wait until half of it is free, or the
-        next message waits. Raises LinkClosed."""
-        self.collect(self.open >= self.size and not self.mute, until=until)
+        next message waits. Return False if `until` comes first. Raises LinkClosed."""
+        return self.collect(self.open >= self.size and not self.mute, until=until)
 
     def collect(self, wait: bool, all_: bool = False, until: float | None = None) -> bool:
         """Read acknowledgements: those that are there; with `wait`, until half the window is free,

@@ -5,13 +5,13 @@ ports without a broker.
     mqtt+rpc://BROKER/ask           mqtt+sub+rpc://BROKER/ask     it asks, it answers (5)
     mosquitto_sub -p PORT -t '#'    mosquitto_pub -p PORT -t x    a port is dialled (3.1.1 or 5)
 
-Rules: `payload.py` says what a payload holds; `+raw` is YARP's own spelling. To a broker `+qos.1`
-waits for acknowledgements, so does `+qos.2`, `+retain` leaves the last message there, `+will.TEXT`
-a message for the case that we vanish, `+user`, `+password` log in. A client that dials us writes,
-its QoS 1 and 2 are acknowledged once the port's reader has it, until it subscribes to the port's
-name: from then on it reads, and misses what it is too slow for. Version 5 may ask: a message with a
-response topic is answered there. A client that is silent for half as long again as it has promised
-to be is gone; its will is then one more message to the port, if it was writing.
+Rules: `carriers/payload.py` says what a payload holds; `+raw` is YARP's own spelling. To a broker
+`+qos.1` waits for acknowledgements, so does `+qos.2`, `+retain` leaves the last message there,
+`+will.TEXT` a message for the case that we vanish, `+user`, `+password` log in. A client that dials
+us writes, its QoS 1 and 2 are acknowledged once the port's reader has it, until it subscribes to
+the port's name: from then on it reads, and misses what it is too slow for. Version 5 may ask: a
+message with a response topic is answered there. A client that is silent for half as long again as
+it has promised to be is gone; its will is then one more message to the port, if it was writing.
 """
 
 from __future__ import annotations

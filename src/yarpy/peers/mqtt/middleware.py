@@ -1,8 +1,9 @@
 """MQTT: the topics of a broker, "mqtt://broker:1883". No library is needed.
 
-Rules: payloads are those of `payload.py`, topics stand at the broker as they are written. A broker
-that goes away is dialled again until it is back. `reliable` is QoS 1; what else the carrier takes
-(`retain`, `user.NAME+password.WORD`, `tls`) is said by `carrier=`. Questions need MQTT 5.
+Rules: payloads are those of `wrap/value/payload.py`, topics stand at the broker as they are
+written. A broker that goes away is dialled again until it is back. `reliable` is QoS 1; what else
+the carrier takes (`retain`, `user.NAME+password.WORD`, `tls`) is said by `carrier=`. Questions need
+MQTT 5.
 """
 
 from __future__ import annotations
@@ -13,7 +14,7 @@ from typing import Any, TypeVar
 
 from yarpy.contact import parse_contact
 from yarpy.errors import LinkClosed, UnknownName, YarpError
-from yarpy.kits.wrap.middleware import Answer, Failure, Item, Received, Way, question_of
+from yarpy.kits.wrap.middleware import Answer, Binding, Failure, Item, Received, question_of
 from yarpy.kits.wrap.port_end import PortEnd
 from yarpy.kits.wrap.value import payload, spelling
 from yarpy.kits.wrap.value.shape import Shape
@@ -32,33 +33,33 @@ class Mqtt:
 
     name = "mqtt"
 
-    def check(self, way: Way) -> None:
-        if not way.place or "/" in way.place:
+    def check(self, binding: Binding) -> None:
+        if not binding.place or "/" in binding.place:
             raise ValueError('mqtt needs a broker: "mqtt://HOST", or "mqtt://HOST:PORT"')
-        find_carrier(parse_carrier(parse_contact(_target(way)).carrier))
-        way.refuse_numbers()
-        way.refuse(qos="what leads to a broker has no thread and no priority of its own")
+        find_carrier(parse_carrier(parse_contact(_target(binding)).carrier))
+        binding.refuse_numbers()
+        binding.refuse(qos="what leads to a broker has no thread and no priority of its own")
 
-    def publisher(self, way: Way, shape: Shape) -> MqttPublisher:
-        return MqttPublisher(way)
+    def publisher(self, binding: Binding, shape: Shape) -> MqttPublisher:
+        return MqttPublisher(binding)
 
-    def listener(self, way: Way, shape: Shape) -> MqttListener:
-        return MqttListener(way, shape)
+    def listener(self, binding: Binding, shape: Shape) -> MqttListener:
+        return MqttListener(binding, shape)
 
-    def server(self, way: Way, name: str, answer: Answer) -> RpcServer:
-        server = RpcServer("", MqttServer(answer, way), register=False)
-        return _connected(server, _target(way, "sub", "rpc"))
+    def server(self, binding: Binding, name: str, answer: Answer) -> RpcServer:
+        server = RpcServer("", MqttServer(answer, binding), register=False)
+        return _connected(server, _target(binding, "sub", "rpc"))
 
-    def client(self, way: Way, shape: Shape) -> MqttClient:
-        return MqttClient(way, shape)
+    def client(self, binding: Binding, shape: Shape) -> MqttClient:
+        return MqttClient(binding, shape)
 
 
-def _target(way: Way, *words: str) -> str:
+def _target(binding: Binding, *words: str) -> str:
     """The topic as something to connect to."""
-    added = [*words, *filter(None, way.carrier.split("+"))]
-    if way.reliable and "rpc" not in words:
+    added = [*words, *filter(None, binding.carrier.split("+"))]
+    if binding.reliable and "rpc" not in words:
         added.append("qos.1")
-    return f"{'+'.join(('mqtt', *added))}://{way.place}/{way.topic}"
+    return f"{'+'.join(('mqtt', *added))}://{binding.place}/{binding.topic}"
 
 
 P = TypeVar("P", bound=BasePort)
@@ -74,33 +75,33 @@ def _connected(port: P, target: str) -> P:
 
 
 class MqttPublisher(PortEnd):
-    def __init__(self, way: Way) -> None:
-        port = BufferedPort("", strict=way.keep == "all")
-        super().__init__(_connected(port, _target(way)), way)
-        self._form = partial(payload.joined, encoding=way.encoding)
+    def __init__(self, binding: Binding) -> None:
+        port = BufferedPort("", strict=binding.keep == "all")
+        super().__init__(_connected(port, _target(binding)), binding)
+        self._form = partial(payload.joined, encoding=binding.encoding)
 
     def publish(self, item: Item) -> int:
-        return self.port.write(item.form(f"bytes {self.way.encoding}", self._form))
+        return self.port.write(item.form(f"bytes {self.binding.encoding}", self._form))
 
 
 class MqttListener(PortEnd):
-    def __init__(self, way: Way, shape: Shape) -> None:
-        port = BufferedPort("", strict=way.keep == "all")
-        super().__init__(_connected(port, _target(way, "sub")), way)
+    def __init__(self, binding: Binding, shape: Shape) -> None:
+        port = BufferedPort("", strict=binding.keep == "all")
+        super().__init__(_connected(port, _target(binding, "sub")), binding)
         self._shape = shape
 
     def listen(self, timeout: float | None) -> Received:
         found = payload.unpack(self.read(timeout).as_(bytes), self._shape)
-        found.middleware = self.way.middleware
+        found.middleware = self.binding.middleware
         return found
 
 
 class MqttServer:
     """A handler for an RpcServer: decodes a payload to arguments, and encodes the result."""
 
-    def __init__(self, answer: Answer, way: Way) -> None:
+    def __init__(self, answer: Answer, binding: Binding) -> None:
         self._answer = answer
-        self._encoding = way.encoding
+        self._encoding = binding.encoding
 
     def __call__(self, message: Message) -> bytes:
         found = self._answer(*question_of(payload.asked(message.as_(bytes))))
@@ -110,10 +111,10 @@ class MqttServer:
 
 
 class MqttClient:
-    def __init__(self, way: Way, shape: Shape) -> None:
-        self._way = way
+    def __init__(self, binding: Binding, shape: Shape) -> None:
+        self._binding = binding
         self._shape = shape
-        self._client = _connected(RpcClient(), _target(way, "rpc"))
+        self._client = _connected(RpcClient(), _target(binding, "rpc"))
 
     def call(
         self, name: str, args: list[Any], kwargs: dict[str, Any], timeout: float | None
@@ -125,7 +126,7 @@ class MqttClient:
             left = None if deadline is None else max(deadline - asked, 0.001)
             message = self._client.ask(question, left)
             if message is None:
-                raise LinkClosed(f'"{self._way.topic}" gave no answer')
+                raise LinkClosed(f'"{self._binding.topic}" gave no answer')
             refused = spelling.failure_of(message.value) if message.spelling == "binary" else None
             if refused is None:
                 break

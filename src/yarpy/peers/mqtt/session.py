@@ -1,7 +1,8 @@
 """A session of MQTT, from either side: messages of both versions, and their acknowledgements.
 
-Rules: `payload.py` says what a payload holds; `+raw` is YARP's own spelling. A message with QoS 2
-is received when the port's reader has it, and once: its number is known until the sender lets go.
+Rules: `carriers/payload.py` says what a payload holds; `+raw` is YARP's own spelling. A message
+with QoS 2 is received when the port's reader has it, and once: its number is known until the sender
+lets go.
 """
 
 from __future__ import annotations

@@ -6,7 +6,7 @@
     everything else                                  std_msgs/String with JSON, as Wrapyfi has it
 
 Rules: a place is a master, "ros://localhost:11311"; without one it is ROS_MASTER_URI's. One node
-for each process and master. Which service a method is says `service.py`.
+for each process and master. Which service a method is says `service/method.py`.
 """
 
 from __future__ import annotations
@@ -18,7 +18,7 @@ from typing import Any, Final
 from yarpy import fork
 from yarpy.data.stamp import Stamp
 from yarpy.errors import DecodeError, LocalProtocolError, Timeout
-from yarpy.kits.wrap.middleware import Answer, Item, Received, Way
+from yarpy.kits.wrap.middleware import Answer, Binding, Item, Received
 from yarpy.kits.wrap.port_end import PortEnd
 from yarpy.kits.wrap.value.array import Picture
 from yarpy.kits.wrap.value.shape import Scalar, Shape, Wired
@@ -44,26 +44,26 @@ class Ros:
 
     name = "ros"
 
-    def check(self, way: Way) -> None:
-        way.refuse(
+    def check(self, binding: Binding) -> None:
+        binding.refuse(
             carrier="topics of ROS go over tcpros",
             qos="a topic's connections are made by ROS",
         )
-        way.refuse_numbers()
-        if "~" in way.topic and way.signature is not None:
-            Service(way, TYPES)
+        binding.refuse_numbers()
+        if "~" in binding.topic and binding.signature is not None:
+            Service(binding, TYPES)
 
-    def publisher(self, way: Way, shape: Shape) -> RosPublisher:
-        return RosPublisher(way, shape)
+    def publisher(self, binding: Binding, shape: Shape) -> RosPublisher:
+        return RosPublisher(binding, shape)
 
-    def listener(self, way: Way, shape: Shape) -> RosListener:
-        return RosListener(way, shape)
+    def listener(self, binding: Binding, shape: Shape) -> RosListener:
+        return RosListener(binding, shape)
 
-    def server(self, way: Way, name: str, answer: Answer) -> RosServer:
-        return RosServer(way, answer)
+    def server(self, binding: Binding, name: str, answer: Answer) -> RosServer:
+        return RosServer(binding, answer)
 
-    def client(self, way: Way, shape: Shape) -> RosClient:
-        return RosClient(way)
+    def client(self, binding: Binding, shape: Shape) -> RosClient:
+        return RosClient(binding)
 
 
 TYPES: Final = Types(
@@ -71,11 +71,11 @@ TYPES: Final = Types(
 )
 
 
-def topic_of(way: Way) -> str:
+def topic_of(binding: Binding) -> str:
     """The topic of messages. Raises LocalProtocolError for the name of a service."""
-    topic, type_ = topic_and_type(way.topic)
+    topic, type_ = topic_and_type(binding.topic)
     if type_:
-        raise LocalProtocolError(f'"{way.topic}" is a service: it can be served and called')
+        raise LocalProtocolError(f'"{binding.topic}" is a service: it can be served and called')
     return topic
 
 
@@ -97,20 +97,20 @@ def as_text(shape: Shape) -> bool:
     return type_of(shape) == "std_msgs/String" and not isinstance(shape, Scalar)
 
 
-def _use(way: Way, user: object) -> Node:
+def _use(binding: Binding, user: object) -> Node:
     """The node of this process at a master; `user` needs it until `_leave`."""
-    key = os.getpid(), way.place
+    key = os.getpid(), binding.place
     with _lock:
         if key not in _nodes:
-            master = f"http://{way.place}/" if way.place else None
+            master = f"http://{binding.place}/" if binding.place else None
             _nodes[key] = Node(f"/yarpy_wrap_{os.getpid()}", master=master), []
         node, users = _nodes[key]
         users.append(user)
         return node
 
 
-def _leave(way: Way, user: object) -> None:
-    key = os.getpid(), way.place
+def _leave(binding: Binding, user: object) -> None:
+    key = os.getpid(), binding.place
     with _lock:
         node, users = _nodes.get(key, (None, []))
         if user not in users:
@@ -125,8 +125,8 @@ def _leave(way: Way, user: object) -> None:
 class Writer(PortEnd):
     """Publishes to a topic of either ROS."""
 
-    def __init__(self, port: MessagePort, way: Way, shape: Shape) -> None:
-        super().__init__(port, way)
+    def __init__(self, port: MessagePort, binding: Binding, shape: Shape) -> None:
+        super().__init__(port, binding)
         self._texts = as_text(shape)
 
     def publish(self, item: Item) -> int:
@@ -137,8 +137,8 @@ class Writer(PortEnd):
 class Reader(PortEnd):
     """Listens to a topic of either ROS."""
 
-    def __init__(self, port: MessagePort, way: Way, shape: Shape) -> None:
-        super().__init__(port, way)
+    def __init__(self, port: MessagePort, binding: Binding, shape: Shape) -> None:
+        super().__init__(port, binding)
         self._shape = shape
         self._texts = as_text(shape)
 
@@ -147,7 +147,7 @@ class Reader(PortEnd):
         stamp = message.stamp
         count, time = (stamp.count, stamp.time) if stamp is not None else (None, None)
         value = self._value(message)
-        return Received(value, count, time, message.source, self.way.middleware)
+        return Received(value, count, time, message.source, self.binding.middleware)
 
     def _value(self, message: Message) -> Any:
         shape = self._shape
@@ -155,28 +155,28 @@ class Reader(PortEnd):
 
 
 class RosPublisher(Writer):
-    def __init__(self, way: Way, shape: Shape) -> None:
-        node = _use(way, self)
+    def __init__(self, binding: Binding, shape: Shape) -> None:
+        node = _use(binding, self)
         try:
-            super().__init__(node.publisher(topic_of(way), type_of(shape)), way, shape)
+            super().__init__(node.publisher(topic_of(binding), type_of(shape)), binding, shape)
         except BaseException:
-            _leave(way, self)
+            _leave(binding, self)
             raise
 
     def close(self) -> None:
         super().close()
-        _leave(self.way, self)
+        _leave(self.binding, self)
 
 
 class RosListener(Reader):
-    def __init__(self, way: Way, shape: Shape) -> None:
-        node = _use(way, self)
+    def __init__(self, binding: Binding, shape: Shape) -> None:
+        node = _use(binding, self)
         try:
-            newest = way.keep == "latest"
-            port = node.subscriber(topic_of(way), type_of(shape), newest=newest)
-            super().__init__(port, way, shape)
+            newest = binding.keep == "latest"
+            port = node.subscriber(topic_of(binding), type_of(shape), newest=newest)
+            super().__init__(port, binding, shape)
         except BaseException:
-            _leave(way, self)
+            _leave(binding, self)
             raise
 
     def _value(self, message: Message) -> Any:
@@ -190,36 +190,36 @@ class RosListener(Reader):
 
     def close(self) -> None:
         super().close()
-        _leave(self.way, self)
+        _leave(self.binding, self)
 
 
 class RosServer:
     """A service; its method runs in the thread of the connection."""
 
-    def __init__(self, way: Way, answer: Answer) -> None:
-        self._way = way
-        service = Service(way, TYPES)
-        self._node = _use(way, self)
+    def __init__(self, binding: Binding, answer: Answer) -> None:
+        self._binding = binding
+        service = Service(binding, TYPES)
+        self._node = _use(binding, self)
         try:
             self._port = self._node.service(
                 service.topic, service.kind, lambda asked: handled(service, asked, answer)
             )
         except BaseException:
-            _leave(way, self)
+            _leave(binding, self)
             raise
 
     def close(self) -> None:
         self._port.close()
-        _leave(self._way, self)
+        _leave(self._binding, self)
 
 
 class RosClient:
     """Calls of a service take turns."""
 
-    def __init__(self, way: Way) -> None:
-        self._way = way
-        self._service = Service(way, TYPES)
-        self._node = _use(way, self)
+    def __init__(self, binding: Binding) -> None:
+        self._binding = binding
+        self._service = Service(binding, TYPES)
+        self._node = _use(binding, self)
 
     def call(
         self, name: str, args: list[Any], kwargs: dict[str, Any], timeout: float | None
@@ -238,4 +238,4 @@ class RosClient:
         return service.value(found)
 
     def close(self) -> None:
-        _leave(self._way, self)
+        _leave(self._binding, self)

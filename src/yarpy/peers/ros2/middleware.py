@@ -11,7 +11,7 @@ import time
 from typing import Any, Final
 
 from yarpy.errors import LinkClosed, UnknownName, YarpError
-from yarpy.kits.wrap.middleware import Answer, Way
+from yarpy.kits.wrap.middleware import Answer, Binding
 from yarpy.kits.wrap.value.shape import Shape
 from yarpy.link.begin.handshake import find_carrier
 from yarpy.peers.ros.middleware import Reader, Writer, topic_of, type_of
@@ -31,66 +31,66 @@ class Ros2:
 
     name = "ros2"
 
-    def check(self, way: Way) -> None:
-        way.refuse(
+    def check(self, binding: Binding) -> None:
+        binding.refuse(
             place="YARPY_ZENOH says where the router of ROS 2 is",
             qos="a topic's connections are made by ROS; say qos.NAME by carrier=",
         )
-        way.refuse_numbers()
-        find_carrier(parse_carrier(_carrier(way)))
-        if "~" in way.topic and way.signature is not None:
-            Service(way, TYPES)
+        binding.refuse_numbers()
+        find_carrier(parse_carrier(_carrier(binding)))
+        if "~" in binding.topic and binding.signature is not None:
+            Service(binding, TYPES)
 
-    def publisher(self, way: Way, shape: Shape) -> Ros2Publisher:
-        return Ros2Publisher(way, shape)
+    def publisher(self, binding: Binding, shape: Shape) -> Ros2Publisher:
+        return Ros2Publisher(binding, shape)
 
-    def listener(self, way: Way, shape: Shape) -> Ros2Listener:
-        return Ros2Listener(way, shape)
+    def listener(self, binding: Binding, shape: Shape) -> Ros2Listener:
+        return Ros2Listener(binding, shape)
 
-    def server(self, way: Way, name: str, answer: Answer) -> Ros2Server:
-        return Ros2Server(way, answer)
+    def server(self, binding: Binding, name: str, answer: Answer) -> Ros2Server:
+        return Ros2Server(binding, answer)
 
-    def client(self, way: Way, shape: Shape) -> Ros2Client:
-        return Ros2Client(way)
+    def client(self, binding: Binding, shape: Shape) -> Ros2Client:
+        return Ros2Client(binding)
 
 
 TYPES: Final = Types("[a-z](?:_?[a-z0-9])*", default_library, lambda library: library.sources)
 
 
-def target_of(way: Way, shape: Shape) -> str:
+def target_of(binding: Binding, shape: Shape) -> str:
     """The topic as something to connect to, with its type."""
     kind = type_of(shape)
-    return _target(way, topic_of(way), kind if isinstance(kind, str) else kind._type, "msg")
+    return _target(binding, topic_of(binding), kind if isinstance(kind, str) else kind._type, "msg")
 
 
-def _carrier(way: Way) -> str:
-    return "+".join(("ros2", *filter(None, way.carrier.split("+"))))
+def _carrier(binding: Binding) -> str:
+    return "+".join(("ros2", *filter(None, binding.carrier.split("+"))))
 
 
-def _target(way: Way, topic: str, name: str, kind: str) -> str:
+def _target(binding: Binding, topic: str, name: str, kind: str) -> str:
     package, _, type_ = name.partition("/")
     full = name if "/" in type_ else f"{package}/{kind}/{type_}"
-    carrier = _carrier(way)
+    carrier = _carrier(binding)
     if "node." not in carrier:
         carrier += f"+node.yarpy_wrap_{os.getpid()}"
     return f"{carrier}://{topic.strip('/')}~{full}"
 
 
 class Ros2Publisher(Writer):
-    def __init__(self, way: Way, shape: Shape) -> None:
-        super().__init__(BufferedPort("", strict=way.keep == "all"), way, shape)
+    def __init__(self, binding: Binding, shape: Shape) -> None:
+        super().__init__(BufferedPort("", strict=binding.keep == "all"), binding, shape)
         try:
-            self.port.connect(target_of(way, shape))
+            self.port.connect(target_of(binding, shape))
         except YarpError:
             self.close()
             raise
 
 
 class Ros2Listener(Reader):
-    def __init__(self, way: Way, shape: Shape) -> None:
-        super().__init__(BufferedPort("", strict=way.keep == "all"), way, shape)
+    def __init__(self, binding: Binding, shape: Shape) -> None:
+        super().__init__(BufferedPort("", strict=binding.keep == "all"), binding, shape)
         try:
-            self.port.listen_to(target_of(way, shape))
+            self.port.listen_to(target_of(binding, shape))
         except YarpError:
             self.close()
             raise
@@ -99,15 +99,15 @@ class Ros2Listener(Reader):
 class Ros2Server:
     """A service; its method runs in the thread of the connection."""
 
-    def __init__(self, way: Way, answer: Answer) -> None:
-        service = Service(way, TYPES)
+    def __init__(self, binding: Binding, answer: Answer) -> None:
+        service = Service(binding, TYPES)
 
         def told(message: Message) -> Any:
             return handled(service, getattr(message, "ros", None), answer)
 
         self._port = RpcServer("", told, register=False)
         try:
-            self._port.listen_to(_target(way, service.topic, service.kind.name, "srv"))
+            self._port.listen_to(_target(binding, service.topic, service.kind.name, "srv"))
         except YarpError:
             self._port.close()
             raise
@@ -117,11 +117,13 @@ class Ros2Server:
 
 
 class Ros2Client:
-    def __init__(self, way: Way) -> None:
-        self._service = Service(way, TYPES)
+    def __init__(self, binding: Binding) -> None:
+        self._service = Service(binding, TYPES)
         self._client = RpcClient()
         try:
-            self._client.connect(_target(way, self._service.topic, self._service.kind.name, "srv"))
+            self._client.connect(
+                _target(binding, self._service.topic, self._service.kind.name, "srv")
+            )
         except YarpError:
             self._client.close()
             raise

@@ -1,6 +1,6 @@
 """Messages of ROS 2 in recordings, for `yarpy play`: the encoding `cdr` of MCAP, and of bags.
 
-Rules: as in `ros/recorded.py`. What says no definition is of a type that is found by its name.
+Rules: as in `ros/bag/recorded.py`. What says no definition is of a type that is found by its name.
 """
 
 from __future__ import annotations

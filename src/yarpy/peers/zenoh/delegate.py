@@ -2,7 +2,7 @@
 
 Rules: so programs of C++ YARP take part, which know a name server alone. Who asks here for a name
 that nobody registered here is told where its port is; a port that cannot be dialled from this
-computer is told as a number of this one, which leads there (`transports/zenoh_gateway.py`). The
+computer is told as a number of this one, which leads there (`tunnel/gateway.py`). The
 other way round, those who cannot dial a port that was registered here reach it through this server,
 if the rules of this computer (access.toml) let everybody do everything there.
 """

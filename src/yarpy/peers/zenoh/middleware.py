@@ -1,7 +1,8 @@
 """Zenoh: keys over routers, "zenoh://router:7447"; without a place what YARPY_ZENOH says.
 
-Rules: a topic is a key without slashes at its ends, and payloads are those of `payload.py`, as
-programs with Wrapyfi have it. Servers are queryables. One session for each place and process.
+Rules: a topic is a key without slashes at its ends, and payloads are those of
+`wrap/value/payload.py`, as programs with Wrapyfi have it. Servers are queryables. One session for
+each place and process.
 """
 
 from __future__ import annotations
@@ -13,7 +14,7 @@ from typing import Any
 
 from yarpy.errors import LinkClosed, PortClosed, Timeout, UnknownName
 from yarpy.kits.wrap.inbox import Inbox
-from yarpy.kits.wrap.middleware import Answer, Failure, Item, Received, Way, question_of
+from yarpy.kits.wrap.middleware import Answer, Binding, Failure, Item, Received, question_of
 from yarpy.kits.wrap.value import payload
 from yarpy.kits.wrap.value.shape import Shape
 from yarpy.log import logger
@@ -32,39 +33,41 @@ class Zenoh:
 
     name = "zenoh"
 
-    def check(self, way: Way) -> None:
-        key_of(way)
-        way.refuse(carrier="routers decide how", qos="its sessions have no threads of ours")
+    def check(self, binding: Binding) -> None:
+        key_of(binding)
+        binding.refuse(carrier="routers decide how", qos="its sessions have no threads of ours")
 
-    def publisher(self, way: Way, shape: Shape) -> ZenohPublisher:
-        return ZenohPublisher(way)
+    def publisher(self, binding: Binding, shape: Shape) -> ZenohPublisher:
+        return ZenohPublisher(binding)
 
-    def listener(self, way: Way, shape: Shape) -> ZenohListener:
-        return ZenohListener(way, shape)
+    def listener(self, binding: Binding, shape: Shape) -> ZenohListener:
+        return ZenohListener(binding, shape)
 
-    def server(self, way: Way, name: str, answer: Answer) -> ZenohServer:
-        return ZenohServer(way, answer)
+    def server(self, binding: Binding, name: str, answer: Answer) -> ZenohServer:
+        return ZenohServer(binding, answer)
 
-    def client(self, way: Way, shape: Shape) -> ZenohClient:
-        return ZenohClient(way, shape)
+    def client(self, binding: Binding, shape: Shape) -> ZenohClient:
+        return ZenohClient(binding, shape)
 
 
-def key_of(way: Way) -> str:
+def key_of(binding: Binding) -> str:
     """The key expression of a topic. Raises ValueError for one that is none."""
-    key = way.topic.strip("/")
+    key = binding.topic.strip("/")
     if not key or "//" in key or any(letter in key for letter in "*$#?"):
-        raise ValueError(f'"{way.topic}" is no key of Zenoh: words with a slash between them')
+        raise ValueError(f'"{binding.topic}" is no key of Zenoh: words with a slash between them')
     return key
 
 
 class ZenohPublisher:
-    def __init__(self, way: Way) -> None:
+    def __init__(self, binding: Binding) -> None:
         zenoh = load()
         self.messages = 0
-        self._encoding = way.encoding
-        self._shared: SharedSession = share(way.place)
-        control = zenoh.CongestionControl.BLOCK if way.reliable else zenoh.CongestionControl.DROP
-        self._key = key_of(way)
+        self._encoding = binding.encoding
+        self._shared: SharedSession = share(binding.place)
+        control = (
+            zenoh.CongestionControl.BLOCK if binding.reliable else zenoh.CongestionControl.DROP
+        )
+        self._key = key_of(binding)
         self._publisher: Any = self._shared.session.declare_publisher(
             self._key, congestion_control=control
         )
@@ -100,14 +103,14 @@ class ZenohPublisher:
 
 
 class ZenohListener:
-    def __init__(self, way: Way, shape: Shape) -> None:
+    def __init__(self, binding: Binding, shape: Shape) -> None:
         from zenoh.handlers import Callback
 
         self.messages = 0
-        self._way = way
+        self._binding = binding
         self._shape = shape
-        self._inbox = Inbox(way.keep)
-        self._shared: SharedSession | None = share(way.place)
+        self._inbox = Inbox(binding.keep)
+        self._shared: SharedSession | None = share(binding.place)
 
         def heard(sample: Any) -> None:
             self.messages += 1
@@ -115,16 +118,18 @@ class ZenohListener:
                 self._inbox.put(Received(sample.payload.to_bytes()))
 
         self._subscriber: Any = self._shared.session.declare_subscriber(
-            key_of(way), Callback(heard, indirect=False)
+            key_of(binding), Callback(heard, indirect=False)
         )
 
     def listen(self, timeout: float | None) -> Received:
         try:
             data = self._inbox.take(timeout).value
         except Timeout:
-            raise Timeout(f'nothing came from "{self._way.topic}" within {timeout:.3g} s') from None
+            raise Timeout(
+                f'nothing came from "{self._binding.topic}" within {timeout:.3g} s'
+            ) from None
         found = payload.unpack(data, self._shape)
-        found.middleware = self._way.middleware
+        found.middleware = self._binding.middleware
         return found
 
     @property
@@ -142,19 +147,19 @@ class ZenohListener:
 class ZenohServer:
     """Answers questions, one after the other, in a thread of its own."""
 
-    def __init__(self, way: Way, answer: Answer) -> None:
+    def __init__(self, binding: Binding, answer: Answer) -> None:
         from zenoh.handlers import Callback
 
-        self._key = key_of(way)
+        self._key = key_of(binding)
         self._answer = answer
-        self._encoding = way.encoding
+        self._encoding = binding.encoding
         self._waiting: SimpleQueue[Any] = SimpleQueue()
-        self._shared: SharedSession | None = share(way.place)
+        self._shared: SharedSession | None = share(binding.place)
         self._queryable: Any = self._shared.session.declare_queryable(
             self._key, Callback(self._heard, indirect=False)
         )
         # Zenoh has threads for this, too, but they would keep the program from ending.
-        name = f"yarpy wrap {way.topic}"
+        name = f"yarpy wrap {binding.topic}"
         threading.Thread(target=self._serve, name=name, daemon=True).start()
 
     def _heard(self, query: Any) -> None:
@@ -195,16 +200,16 @@ class ZenohServer:
 class ZenohClient:
     """Asks a queryable. Whether there is one says what it means when no answer comes."""
 
-    def __init__(self, way: Way, shape: Shape) -> None:
-        self._way = way
+    def __init__(self, binding: Binding, shape: Shape) -> None:
+        self._binding = binding
         self._shape = shape
-        self._shared: SharedSession | None = share(way.place)
-        self._querier: Any = self._shared.session.declare_querier(key_of(way))
+        self._shared: SharedSession | None = share(binding.place)
+        self._querier: Any = self._shared.session.declare_querier(key_of(binding))
 
     def call(
         self, name: str, args: list[Any], kwargs: dict[str, Any], timeout: float | None
     ) -> Any:
-        topic = self._way.topic
+        topic = self._binding.topic
         question = payload.question(args, kwargs)
         deadline = None if timeout is None else time.monotonic() + timeout
         while True:
@@ -247,14 +252,14 @@ class ZenohClient:
             raise self._closed()
         left = _LONGEST if deadline is None else max(deadline - time.monotonic(), 0.001)
         late = False
-        for reply in shared.session.get(key_of(self._way), payload=question, timeout=left):
+        for reply in shared.session.get(key_of(self._binding), payload=question, timeout=left):
             if reply.ok is not None:
                 return reply.ok.payload.to_bytes(), False
             late = True  # the library says so itself
         return None, late
 
     def _closed(self) -> LinkClosed:
-        return LinkClosed(f'"{self._way.topic}" was closed here')
+        return LinkClosed(f'"{self._binding.topic}" was closed here')
 
     def close(self) -> None:
         self._querier = None  # it undeclares itself

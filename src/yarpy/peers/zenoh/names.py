@@ -1,6 +1,6 @@
 """Names without a name server: every port tells its own over Zenoh, and is asked there.
 
-Rules: one session for each place (`transports/zenoh.py`), opened when it is first needed. What a
+Rules: one session for each place (`transport.py`), opened when it is first needed. What a
 port tells vanishes with its program, and comes back by itself with a router that was restarted. A
 question is answered by the port itself, so it is never out of date. Where a port can be dialled
 directly, its address is returned, else one inside Zenoh (`ZID.zenoh`), which leads there over the

@@ -8,11 +8,11 @@
 
 Rules: a carrier string says what the side that dials is. Of a socket that dials us we are whatever
 fits, all at once. What PUB and SUB exchange has the topic as its first frame; the topic of a port
-is its name. A REQ's question goes to the port's reader, whose reply returns. `payload.py` says what
-the last frame holds; `+raw` is YARP's own spelling, under a topic that begins with `raw:`, which
-subscribers ask for by subscribing to `raw:`. A SUB never keeps its writer waiting: as with ZeroMQ's
-own high-water mark a number of messages wait for it, and others are dropped, and counted. PINGs are
-answered; a host that has died is noticed by TCP.
+is its name. A REQ's question goes to the port's reader, whose reply returns. `carriers/payload.py`
+says what the last frame holds; `+raw` is YARP's own spelling, under a topic that begins with
+`raw:`, which subscribers ask for by subscribing to `raw:`. A SUB never keeps its writer waiting: as
+with ZeroMQ's own high-water mark a number of messages wait for it, and others are dropped, and
+counted. PINGs are answered; a host that has died is noticed by TCP.
 """
 
 from __future__ import annotations

@@ -1,6 +1,7 @@
 """Topics at a broker of ZeroMQ: a way in and a way out, in frames.
 
-    frames:  topic, then what `payload.py` makes of a value; of a frame, its header and its buffers
+    frames:  topic, then what `wrap/value/payload.py` makes of a value; of a frame, its header and
+             its buffers
     asked:   TOPIC?, reply topic, number, question; without a question only the way back is tried
     answer:  reply topic, number, answer
 

@@ -1,6 +1,6 @@
 """ZeroMQ: topics at a broker, as programs with Wrapyfi have it, "zeromq://host:5555". Needs pyzmq.
 
-Rules: on this computer nobody has to start the broker (`zmq_broker.py`). A value is `topic, JSON`
+Rules: on this computer nobody has to start the broker (`broker.py`). A value is `topic, JSON`
 or `topic, header, buffers`; what Wrapyfi sends is read as well. Servers are told apart by their
 topics, by frames `TOPIC?, reply topic, number, question`; Wrapyfi's requests have no topics.
 """
@@ -10,7 +10,7 @@ from __future__ import annotations
 import threading
 from typing import Any
 
-from yarpy.kits.wrap.middleware import Answer, Failure, Item, Received, Way, question_of
+from yarpy.kits.wrap.middleware import Answer, Binding, Failure, Item, Received, question_of
 from yarpy.kits.wrap.value import payload
 from yarpy.kits.wrap.value.shape import Shape
 from yarpy.peers.zmq.broker import keep_ready
@@ -24,50 +24,50 @@ class ZeroMq:
 
     name = "zeromq"
 
-    def check(self, way: Way) -> None:
-        parse_place(way.place)
-        way.refuse(
+    def check(self, binding: Binding) -> None:
+        parse_place(binding.place)
+        binding.refuse(
             carrier="ZeroMQ has its own, tcp",
             qos="its threads and sockets are ZeroMQ's own",
             reliable="publishers of ZeroMQ drop what a slow subscriber cannot take",
         )
 
-    def publisher(self, way: Way, shape: Shape) -> ZmqPublisher:
-        return ZmqPublisher(way)
+    def publisher(self, binding: Binding, shape: Shape) -> ZmqPublisher:
+        return ZmqPublisher(binding)
 
-    def listener(self, way: Way, shape: Shape) -> ZmqListener:
-        return ZmqListener(way, shape)
+    def listener(self, binding: Binding, shape: Shape) -> ZmqListener:
+        return ZmqListener(binding, shape)
 
-    def server(self, way: Way, name: str, answer: Answer) -> Answerer:
+    def server(self, binding: Binding, name: str, answer: Answer) -> Answerer:
         def answered(frames: list[bytes]) -> list[Any]:
             try:
                 found = answer(*question_of(payload.of_parts(frames).value))
                 if not isinstance(found, Failure):
-                    return payload.parts(found, way.encoding)
+                    return payload.parts(found, binding.encoding)
             except Exception as error:
                 found = Failure.of(error)
             return [payload.failure(found)]
 
-        pub, sub = addresses(way)
-        return Answerer(way.topic, sub, pub, answered)
+        pub, sub = addresses(binding)
+        return Answerer(binding.topic, sub, pub, answered)
 
-    def client(self, way: Way, shape: Shape) -> ZmqClient:
-        return ZmqClient(way, shape)
+    def client(self, binding: Binding, shape: Shape) -> ZmqClient:
+        return ZmqClient(binding, shape)
 
 
-def addresses(way: Way) -> tuple[str, str]:
+def addresses(binding: Binding) -> tuple[str, str]:
     """Return the addresses of the broker's XPUB and XSUB. On this computer there is one from now
     on."""
-    host, number = parse_place(way.place)
+    host, number = parse_place(binding.place)
     if host in _LOCAL:
         keep_ready(host, number, number + 1)
     return f"tcp://{host}:{number}", f"tcp://{host}:{number + 1}"
 
 
 class ZmqPublisher:
-    def __init__(self, way: Way) -> None:
-        self._encoding = way.encoding
-        self._out = Out(way.topic, addresses(way)[1])
+    def __init__(self, binding: Binding) -> None:
+        self._encoding = binding.encoding
+        self._out = Out(binding.topic, addresses(binding)[1])
 
     def publish(self, item: Item) -> int:
         parts = item.form(f"parts {self._encoding}", lambda one: payload.parts(one, self._encoding))
@@ -85,15 +85,15 @@ class ZmqPublisher:
 
 
 class ZmqListener:
-    def __init__(self, way: Way, shape: Shape) -> None:
-        self._way = way
+    def __init__(self, binding: Binding, shape: Shape) -> None:
+        self._binding = binding
         self._shape = shape
-        keep = way.keep if isinstance(way.keep, int) else 0
-        self._in = In(way.topic, addresses(way)[0], way.keep == "latest", keep)
+        keep = binding.keep if isinstance(binding.keep, int) else 0
+        self._in = In(binding.topic, addresses(binding)[0], binding.keep == "latest", keep)
 
     def listen(self, timeout: float | None) -> Received:
         found = payload.of_parts(self._in.receive(timeout), self._shape)
-        found.middleware = self._way.middleware
+        found.middleware = self._binding.middleware
         return found
 
     @property
@@ -107,10 +107,10 @@ class ZmqListener:
 class ZmqClient:
     """Several questions at a time have a way to the broker each."""
 
-    def __init__(self, way: Way, shape: Shape) -> None:
-        self._way = way
+    def __init__(self, binding: Binding, shape: Shape) -> None:
+        self._binding = binding
         self._shape = shape
-        self._addresses = addresses(way)
+        self._addresses = addresses(binding)
         self._idle: list[Caller] = []
         self._lock = threading.RLock()  # of the list
         self._closed = False
@@ -122,7 +122,7 @@ class ZmqClient:
             caller = self._idle.pop() if self._idle else None
         if caller is None:
             pub, sub = self._addresses
-            caller = Caller(self._way.topic, sub, pub)
+            caller = Caller(self._binding.topic, sub, pub)
         try:
             frames = caller.ask(payload.question_parts(args, kwargs), timeout)
         except BaseException:

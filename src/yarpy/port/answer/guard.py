@@ -30,7 +30,7 @@ from yarpy.registry import graphs
 from yarpy.route import CarrierSpec, parse_carrier
 from yarpy.wire.message import ADMIN, CALL, DATA, QUIT, Message, Refused
 
-# Administrative requests by their first four letters, as `port/admin.py` reads them.
+# Administrative requests by their first four letters, as `answer/admin.py` reads them.
 QUESTIONS: Final = frozenset(("help", "ver", "list", "get", "stat", "pray"))
 CHANGES: Final = frozenset(("add", "del", "set", "prop"))
 MONITORS: Final = frozenset(("atch", "dtch"))
@@ -227,7 +227,7 @@ def _remote(link: Inbound | Outbound) -> str:
 
 
 def _words(request: Bottle) -> list[str]:
-    """The first three words of a request, as `port/admin.py` reads them: the first is a word, or ""
-    if it is none, the others are whatever their text says."""
+    """Return the first three words of a request, as `answer/admin.py` reads them: the first is a
+    word, or "" if it is none, the others are whatever their text says."""
     first = plain_text(request[0]) if request and isinstance(request[0], str) else ""
     return [first, *map(plain_text, request[1:3]), "", ""][:3]

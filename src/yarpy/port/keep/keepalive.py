@@ -129,7 +129,7 @@ class Keepalive:
             if heard and sign.asked and not sign.cut:
                 self._go_on(link, sign, good=False, bad=0)
                 return
-        elif not (heard or link.sender.fate.open or link.carrier.delivery.broadcast):
+        elif not (heard or link.sender.outcome.open or link.carrier.delivery.broadcast):
             sign.due = now + sign.pause  # nothing is open: nothing to ask
             return
         silent = 0.0 if heard else now - sign.heard

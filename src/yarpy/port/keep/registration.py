@@ -185,7 +185,7 @@ class Registration:
                 "now, perhaps stopped or busy: end it, or take its name out by `yarpy name "
                 f"unregister {self.name}`, or choose another name"
             ) from error
-        ours = is_local(known.host) and any(one.name == self.name for one in LOOP.entrances)
+        ours = is_local(known.host) and any(one.name == self.name for one in LOOP.listening)
         if found == self.name and ours:
             raise AddressError(
                 f'"{self.name}" is in use by this program itself: close() that port first, or '

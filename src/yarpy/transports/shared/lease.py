@@ -51,7 +51,7 @@ LENDERS: Final[WeakSet[Lender]] = WeakSet()
 
 def _leave_to_parent() -> None:
     """In a forked process, which has a copy of each view of its parent: what ends here does not end
-    there. It is registered before what closes the parent's ports here (`port/fork.py`)."""
+    there. It is registered before what closes the parent's ports here (`port/keep/fork.py`)."""
     for lender in tuple(LENDERS):
         lender.disown()
 

@@ -3,35 +3,35 @@
 import pytest
 
 from yarpy.errors import DecodeError
-from yarpy.kits.record.form.form import CDR_HEAD, Form, Spelled, unspelled
+from yarpy.kits.record.form.form import CDR_HEAD, Converted, Form, restored
 
 PROTO = Form("protobuf 6", "protobuf", "X", "protobuf", b"")
 CDR = Form("cdr body", "cdr", "X", "ros2msg", b"")
 DOUBLES = bytes(range(16))
 FRONT = b"\x10\x05" + b"\x32\x10"  # a number, and the head of field 6
 ROWS = [
-    (Spelled(PROTO, FRONT, DOUBLES, b"head"), "protobuf 6", b"head" + DOUBLES),
-    (Spelled(PROTO, b"", b"", b"whole"), "protobuf", b"whole"),
-    (Spelled(CDR, CDR_HEAD.pack(0, 1, 0, 0, 0, 2), DOUBLES, b"h"), "cdr body", b"h" + DOUBLES),
-    (Spelled(CDR, CDR_HEAD.pack(0, 1, 0, 0, 0, 2) + DOUBLES, b"", b"h"), "cdr", b"h"),
+    (Converted(PROTO, FRONT, DOUBLES, b"head"), "protobuf 6", b"head" + DOUBLES),
+    (Converted(PROTO, b"", b"", b"whole"), "protobuf", b"whole"),
+    (Converted(CDR, CDR_HEAD.pack(0, 1, 0, 0, 0, 2), DOUBLES, b"h"), "cdr body", b"h" + DOUBLES),
+    (Converted(CDR, CDR_HEAD.pack(0, 1, 0, 0, 0, 2) + DOUBLES, b"", b"h"), "cdr", b"h"),
 ]
 
 
 @pytest.mark.parametrize("envelope", [None, b"", b"free text"])
 @pytest.mark.parametrize(("spelled", "name", "payload"), ROWS)
-def test_there_and_back(spelled: Spelled, name: str, payload: bytes, envelope: bytes) -> None:
-    data = b"".join(spelled.parts(envelope))
-    parts, text = unspelled(name, memoryview(data), envelope is not None)
+def test_there_and_back(converted: Converted, name: str, payload: bytes, envelope: bytes) -> None:
+    data = b"".join(converted.parts(envelope))
+    parts, text = restored(name, memoryview(data), envelope is not None)
     assert b"".join(parts) == payload
     assert text == (envelope or b"").decode()
 
 
 @pytest.mark.parametrize(("spelled", "name", "payload"), ROWS)
-def test_what_is_cut_off(spelled: Spelled, name: str, payload: bytes) -> None:
-    data = memoryview(b"".join(spelled.parts(b"text")))
+def test_what_is_cut_off(converted: Converted, name: str, payload: bytes) -> None:
+    data = memoryview(b"".join(converted.parts(b"text")))
     for end in range(len(data)):
         try:
-            parts, _ = unspelled(name, data[:end], True)
+            parts, _ = restored(name, data[:end], True)
         except DecodeError:
             continue
         assert len(b"".join(parts)) <= len(payload) + len(b"text")
@@ -40,7 +40,7 @@ def test_what_is_cut_off(spelled: Spelled, name: str, payload: bytes) -> None:
 @pytest.mark.parametrize("name", ["", "json", "protobuf x", "protobuf 99999"])
 def test_unknown_forms(name: str) -> None:
     with pytest.raises(DecodeError):
-        unspelled(name, memoryview(b"\xc2\x3e\0"), False)
+        restored(name, memoryview(b"\xc2\x3e\0"), False)
 
 
 @pytest.mark.parametrize(
@@ -55,10 +55,10 @@ def test_unknown_forms(name: str) -> None:
 )
 def test_lies(name: str, data: bytes) -> None:
     with pytest.raises(DecodeError):
-        unspelled(name, memoryview(data), False)
+        restored(name, memoryview(data), False)
 
 
 def test_an_envelope_that_is_longer_than_its_message() -> None:
-    data = b"".join(Spelled(PROTO, b"", b"", b"abc").parts(b""))[:-4] + b"\xff\0\0\0"
+    data = b"".join(Converted(PROTO, b"", b"", b"abc").parts(b""))[:-4] + b"\xff\0\0\0"
     with pytest.raises(DecodeError, match="longer than its message"):
-        unspelled("protobuf", memoryview(data), True)
+        restored("protobuf", memoryview(data), True)

@@ -3,7 +3,7 @@
 import pytest
 from support.recordings import payload_of
 
-from yarpy.kits.record.form.form import unspelled
+from yarpy.kits.record.form.form import restored
 from yarpy.kits.record.form.line import line
 from yarpy.kits.record.form.protobuf import fields_of
 
@@ -15,7 +15,7 @@ def test_a_line() -> None:
     found = line(payload, 5, "/log/lab/demo/7")
     assert found is not None
     data = memoryview(b"".join(found.parts(None)))
-    assert unspelled("protobuf", data, False) == ((payload,), "")
+    assert restored("protobuf", data, False) == ((payload,), "")
     fields = fields_of(data)
     assert (bytes(fields[3]), bytes(fields[4])) == (b"a joint is hot", b"yarp.dev")
     assert data[: 2 + len(fields[1]) + 2].tobytes().endswith(b"\x10\x03")  # a warning

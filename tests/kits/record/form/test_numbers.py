@@ -8,7 +8,7 @@ from support.recordings import payload_of
 
 import yarpy
 from yarpy.kits.record.form import numbers
-from yarpy.kits.record.form.form import Spelled, unspelled
+from yarpy.kits.record.form.form import Converted, restored
 
 
 def doubles(data: bytes) -> tuple[float, ...]:
@@ -18,7 +18,7 @@ def doubles(data: bytes) -> tuple[float, ...]:
     return struct.unpack_from(f"<{count}d", data, 20)
 
 
-def written(found: Spelled | None) -> bytes:
+def written(found: Converted | None) -> bytes:
     assert found is not None
     return b"".join(found.parts(None))
 
@@ -28,7 +28,7 @@ def test_a_vector_is_there_once() -> None:
     data = written(numbers.vector(payload))
     assert doubles(data) == (1.5, -2.5, 3.5)
     assert len(data) == 20 + len(payload)
-    parts, _ = unspelled("cdr body", memoryview(data), False)
+    parts, _ = restored("cdr body", memoryview(data), False)
     assert b"".join(parts) == payload
 
 
@@ -36,7 +36,7 @@ def test_a_matrix_row_by_row() -> None:
     payload = payload_of(yarpy.Matrix(np.array([[1.0, 2], [3, 4]])))
     data = written(numbers.matrix(payload))
     assert doubles(data) == (1, 2, 3, 4)
-    parts, _ = unspelled("cdr body", memoryview(data), False)
+    parts, _ = restored("cdr body", memoryview(data), False)
     assert b"".join(parts) == payload
 
 
@@ -61,4 +61,4 @@ def test_numbers_of_any_kind() -> None:
     payload = payload_of([1, 2.5])
     data = written(numbers.numbers((1, 2.5), payload))
     assert doubles(data) == (1.0, 2.5)
-    assert unspelled("cdr", memoryview(data), False) == ((payload,), "")
+    assert restored("cdr", memoryview(data), False) == ((payload,), "")

@@ -11,18 +11,18 @@ import yarpy
 from yarpy.data.bottle import Bottle
 from yarpy.data.value import Vocab
 from yarpy.kits.record.form import sensor
-from yarpy.kits.record.form.form import Spelled, unspelled
+from yarpy.kits.record.form.form import Converted, restored
 from yarpy.kits.record.form.protobuf import fields_of
 from yarpy.kits.record.form.structure import Structure
 
 SENT = 1_500_000_000
 
 
-def read(found: Spelled | None, payload: bytes) -> dict[int, bytes]:
+def read(found: Converted | None, payload: bytes) -> dict[int, bytes]:
     """The fields of bytes of a message, which must give the payload back."""
     assert found is not None
     data = memoryview(b"".join(found.parts(None)))
-    parts, _ = unspelled(found.form.name, data, False)
+    parts, _ = restored(found.form.name, data, False)
     assert b"".join(parts) == payload
     fields = {number: bytes(one) for number, one in fields_of(data).items()}
     assert fields[1] == bytes.fromhex("08011080cab5ee01")  # 1.5 s, but for scans' and clouds' names
@@ -77,7 +77,7 @@ def test_points() -> None:
     found = sensor.cloud(payload, SENT, "/depth")
     assert found is not None
     data = memoryview(b"".join(found.parts(None)))
-    assert b"".join(unspelled(found.form.name, data, False)[0]) == payload
+    assert b"".join(restored(found.form.name, data, False)[0]) == payload
     fields = fields_of(data)
     assert fields[2] == b"/depth" and len(fields[6]) == 3 * 32
     for name in (b"x", b"y", b"z", b"red", b"green", b"blue", b"alpha"):

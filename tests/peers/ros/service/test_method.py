@@ -12,7 +12,7 @@ import pytest
 import yarpy
 from yarpy.kits import wrap
 from yarpy.kits.wrap.method import Method
-from yarpy.kits.wrap.middleware import Failure, Item, Way
+from yarpy.kits.wrap.middleware import Binding, Failure, Item
 from yarpy.peers.ros.message.library import Library
 from yarpy.peers.ros.service.method import Service, Types, error_of, handled, topic_and_type
 
@@ -37,7 +37,7 @@ class State:
 
 
 def service(func: Any, topic: str = "/x", types: Types | None = None) -> Service:
-    return Service(Way(topic, "ros", signature=Method(func).called(False)), types or types_())
+    return Service(Binding(topic, "ros", signature=Method(func).called(False)), types or types_())
 
 
 def crossed(func: Any, *args: Any, **kwargs: Any) -> Any:

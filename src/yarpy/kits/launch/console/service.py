@@ -44,8 +44,8 @@ def answer(supervisor: Supervisor, asked: dict[str, Any]) -> dict[str, Any]:
         return {"ok": True}
     if word in ("connect", "disconnect"):
         source, target = str(asked.get("from", "")), str(asked.get("to", ""))
-        keeper = supervisor.keeper
-        (keeper.take_up if word == "connect" else keeper.let_go)(source, target)
+        connections = supervisor.connections
+        (connections.take_up if word == "connect" else connections.let_go)(source, target)
         return {"ok": True}
     if word == "down":
         supervisor.over.set()

@@ -17,8 +17,8 @@ from yarpy.errors import UnknownName
 from yarpy.kits.launch.application.application import Application, Module
 from yarpy.kits.launch.document.advice import advice
 from yarpy.kits.launch.supervise import process
+from yarpy.kits.launch.supervise.connections import Connections
 from yarpy.kits.launch.supervise.difference import difference
-from yarpy.kits.launch.supervise.keeper import Keeper
 from yarpy.kits.launch.supervise.local import GRACE, LocalRunner
 from yarpy.kits.launch.supervise.runner import Runner
 from yarpy.kits.launch.supervise.unit import FINAL, Unit
@@ -62,7 +62,7 @@ class Supervisor:
         self._waves: dict[str, int] = {}
         self._sampled: tuple[float, dict[str, tuple[float, int]]] = (0.0, {})
         self._usage: dict[str, tuple[float, int]] = {}
-        self.keeper = Keeper(application.connections, names)
+        self.connections = Connections(application.connections, names)
         self.waiting = Waiting(self.find, port_timeout, names)
         self._off: set[str] = set()  # programs that were ended by hand
         self._usual = usual
@@ -81,8 +81,8 @@ class Supervisor:
         self._off = set(self.units)
         for unit in self.units.values():
             unit.state, unit.detail = "stopped", "not started yet"
-        self.keeper.rest()
-        self.keeper.start()
+        self.connections.rest()
+        self.connections.start()
 
     def start(self) -> str:
         """Start all. Return "", or why the application cannot: a port that it needs is missing."""
@@ -92,7 +92,7 @@ class Supervisor:
                 self._news("", f"waiting for {need.port}")
                 if why := self.waiting.wait_for(need, never):
                     return f"{need.where}: {why}"
-        self.keeper.start()
+        self.connections.start()
         for unit in self.units.values():
             unit.start()
         return ""
@@ -134,7 +134,7 @@ class Supervisor:
         new = {label: self._unit(modules[label]) for label in (*done.new, *done.other)}
         self.units = {label: new.get(label) or self.units[label] for label in modules}
         self._off.difference_update(done.gone, done.other)
-        self.keeper.replace(application.connections)
+        self.connections.replace(application.connections)
         for unit in new.values():
             unit.start()
         return [*done.texts()]
@@ -142,7 +142,7 @@ class Supervisor:
     def stop(self) -> list[str]:
         """Stop all, in reverse; return what would not end."""
         left: list[str] = []
-        self.keeper.close()
+        self.connections.close()
         for unit in self.units.values():
             if not unit.running:
                 unit.stop()  # it waits, or pauses
@@ -229,7 +229,7 @@ class Supervisor:
                 "detail": link.detail,
                 "made": link.made,
             }
-            for link in self.keeper.links
+            for link in self.connections.links
         ]
         return {
             "application": self.application.name,
@@ -259,7 +259,7 @@ class Supervisor:
         if unit.state == "running":
             self._place(unit)
         if unit.state in ("running", *FINAL, "pausing"):
-            self.keeper.touch()
+            self.connections.touch()
         if unit.state == "running":
             text = f"running (pid {unit.handle.pid})" if unit.handle is not None else "running"
             self._news(unit.label, text)

@@ -28,7 +28,7 @@ _DOUBLE: Final = 8
 
 
 class Form(NamedTuple):
-    """A way in which messages are spelled: `name` is kept with the channel.
+    """A way in which messages are written: `name` is kept with the channel.
 
     `protobuf` has all of YARP's bytes in the rest, `protobuf 6` also those of field 6; `cdr` all in
     the rest, `cdr body` also the numbers.
@@ -41,7 +41,7 @@ class Form(NamedTuple):
     description: bytes
 
 
-class Spelled(NamedTuple):
+class Converted(NamedTuple):
     """A message: `front`, then `body` and `rest` of YARP's bytes."""
 
     form: Form
@@ -58,7 +58,7 @@ class Spelled(NamedTuple):
         return (self.front, self.body, key(REST) + varint(size), self.rest, *tail)
 
 
-def unspelled(name: str, data: memoryview, text: bool) -> tuple[tuple[memoryview, ...], str]:
+def restored(name: str, data: memoryview, text: bool) -> tuple[tuple[memoryview, ...], str]:
     """Return the parts of a message of YARP, and its envelope if that was kept as `text`. name:
     that of its form. Raises DecodeError."""
     if name.startswith("cdr"):

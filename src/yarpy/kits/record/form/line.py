@@ -9,7 +9,7 @@ from typing import Final
 
 from yarpy.errors import YarpError
 from yarpy.kits.record.envelope import SECOND
-from yarpy.kits.record.form.form import Bytes, Spelled
+from yarpy.kits.record.form.form import Bytes, Converted
 from yarpy.kits.record.form.protobuf import encode, timestamp
 from yarpy.kits.record.form.sensor import form_of
 from yarpy.port.keep.log_line import LogLine, read_message
@@ -35,7 +35,7 @@ def read_line(payload: Bytes, port: str) -> LogLine | None:
     return found if found is not None and found.level else None
 
 
-def line(payload: Bytes, sent: int, port: str) -> Spelled | None:
+def line(payload: Bytes, sent: int, port: str) -> Converted | None:
     """Return a line of a log; None for what is none."""
     found = read_line(payload, port)
     if found is None:
@@ -49,7 +49,7 @@ def line(payload: Bytes, sent: int, port: str) -> Spelled | None:
         "file": _text(more.get("filename")),
         "line": _count(more.get("line")),
     }
-    return Spelled(LINE, encode(LINE.schema, values), b"", payload)
+    return Converted(LINE, encode(LINE.schema, values), b"", payload)
 
 
 def _text(value: object) -> str:

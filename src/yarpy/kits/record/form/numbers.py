@@ -10,7 +10,7 @@ from struct import Struct
 from typing import Final
 
 from yarpy.data.value import FLOAT64, LIST
-from yarpy.kits.record.form.form import CDR_HEAD, Bytes, Form, Spelled
+from yarpy.kits.record.form.form import CDR_HEAD, Bytes, Converted, Form
 
 _NAME: Final = "std_msgs/msg/Float64MultiArray"
 _LINE: Final = "=" * 80
@@ -38,7 +38,7 @@ def _head(count: int) -> bytes:
     return CDR_HEAD.pack(0, 1, 0, 0, 0, count)
 
 
-def vector(payload: Bytes) -> Spelled | None:
+def vector(payload: Bytes) -> Converted | None:
     """Return a list of float64; None if it is empty, of other numbers, or something follows it."""
     if len(payload) < _VECTOR.size:
         return None
@@ -48,7 +48,7 @@ def vector(payload: Bytes) -> Spelled | None:
     return _split(payload, _VECTOR.size, count)
 
 
-def matrix(payload: Bytes) -> Spelled | None:
+def matrix(payload: Bytes) -> Converted | None:
     """Return the numbers of a matrix, row by row; None if there are none or something follows."""
     count, rest = divmod(len(payload) - _MATRIX, _DOUBLE)
     if rest or count <= 0 or _VECTOR.unpack_from(payload, 24) != (LIST + FLOAT64, count):
@@ -56,9 +56,9 @@ def matrix(payload: Bytes) -> Spelled | None:
     return _split(payload, _MATRIX, count)
 
 
-def _split(payload: Bytes, start: int, count: int) -> Spelled:
+def _split(payload: Bytes, start: int, count: int) -> Converted:
     view = memoryview(payload)
-    return Spelled(NUMBERS_BODY, _head(count), view[start:], view[:start])
+    return Converted(NUMBERS_BODY, _head(count), view[start:], view[:start])
 
 
 @lru_cache(64)
@@ -66,8 +66,8 @@ def _struct(count: int) -> Struct:
     return Struct(f"{CDR_HEAD.format}{count}d")
 
 
-def numbers(values: tuple[float, ...], payload: Bytes) -> Spelled:
+def numbers(values: tuple[float, ...], payload: Bytes) -> Converted:
     """Return a message of any numbers."""
     count = len(values)
     front = _struct(count).pack(0, 1, 0, 0, 0, count, *values)
-    return Spelled(NUMBERS, front, b"", payload)
+    return Converted(NUMBERS, front, b"", payload)

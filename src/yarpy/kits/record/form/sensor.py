@@ -14,7 +14,7 @@ from yarpy.data.sig.image import Image
 from yarpy.data.sig.pointcloud import KINDS, PointCloud
 from yarpy.data.sig.sound import Sound
 from yarpy.errors import YarpError
-from yarpy.kits.record.form.form import Bytes, Form, Spelled
+from yarpy.kits.record.form.form import Bytes, Converted, Form
 from yarpy.kits.record.form.protobuf import descriptor_set, encode, key, timestamp, varint
 
 
@@ -47,7 +47,7 @@ JOINT_PARTS: Final = (22, 24)  # elements of what a control board sends
 SCAN_PARTS: Final = 6
 
 
-def picture(payload: Bytes, sent: int, frame: str) -> Spelled | None:
+def picture(payload: Bytes, sent: int, frame: str) -> Converted | None:
     """Return a picture, taken at `sent` (nanoseconds since 1970) by `frame`."""
     try:
         image = Image.found(payload)
@@ -67,7 +67,7 @@ def picture(payload: Bytes, sent: int, frame: str) -> Spelled | None:
     return _split(PICTURE, encode(PICTURE.schema, values), payload, _IMAGE_HEAD)
 
 
-def cloud(payload: Bytes, sent: int, frame: str) -> Spelled | None:
+def cloud(payload: Bytes, sent: int, frame: str) -> Converted | None:
     """Return points in space."""
     try:
         points = PointCloud.from_wire(payload)
@@ -88,7 +88,7 @@ def cloud(payload: Bytes, sent: int, frame: str) -> Spelled | None:
     return _split(CLOUD, encode(CLOUD.schema, values), payload, _CLOUD_HEAD)
 
 
-def sound(payload: Bytes, sent: int) -> Spelled | None:
+def sound(payload: Bytes, sent: int) -> Converted | None:
     """Return a sound."""
     try:
         samples = Sound.from_wire(payload)
@@ -103,14 +103,14 @@ def sound(payload: Bytes, sent: int) -> Spelled | None:
     if samples.channels == 1 and len(payload) == _SOUND_HEAD.size + 2 * samples.length:
         return _split(MONO_SOUND, encode(SOUND.schema, values), payload, _SOUND_HEAD.size)
     data = samples.array.T.astype("<i2").tobytes()  # sample by sample, not channel by channel
-    return Spelled(SOUND, encode(SOUND.schema, {**values, "data": data}), b"", payload)
+    return Converted(SOUND, encode(SOUND.schema, {**values, "data": data}), b"", payload)
 
 
-def _split(form: Form, front: bytes, payload: Bytes, start: int) -> Spelled:
+def _split(form: Form, front: bytes, payload: Bytes, start: int) -> Converted:
     """Return a message whose last field for others is what follows `start` of the payload."""
     view, number = memoryview(payload), int(form.name.rpartition(" ")[2])
     head = key(number) + varint(len(view) - start)
-    return Spelled(form, front + head, view[start:], view[:start])
+    return Converted(form, front + head, view[start:], view[:start])
 
 
 def is_scan(outline: tuple[Any, ...]) -> bool:
@@ -124,14 +124,14 @@ def is_scan(outline: tuple[Any, ...]) -> bool:
     )
 
 
-def scan(values: tuple[float, ...], payload: Bytes, sent: int, frame: str) -> Spelled:
+def scan(values: tuple[float, ...], payload: Bytes, sent: int, frame: str) -> Converted:
     """Return what a laser has seen; angles come in degrees."""
     told = {
         "timestamp": timestamp(sent), "frame_id": frame, "pose": _POSE,
         "start_angle": math.radians(values[0]), "end_angle": math.radians(values[1]),
         "ranges": values[4:-1],
     }  # fmt: skip
-    return Spelled(SCAN, encode(SCAN.schema, told), b"", payload)
+    return Converted(SCAN, encode(SCAN.schema, told), b"", payload)
 
 
 def joints_of(outline: tuple[Any, ...]) -> int:
@@ -145,7 +145,7 @@ def joints_of(outline: tuple[Any, ...]) -> int:
     return len(lists[0]) if set(lists[0]) == {"d"} else 0
 
 
-def joints(values: tuple[float, ...], count: int, payload: Bytes, sent: int) -> Spelled:
+def joints(values: tuple[float, ...], count: int, payload: Bytes, sent: int) -> Converted:
     """Return the state of `count` joints, in radians; what is not measured is 0."""
     places, speeds, gains = (values[n * count : (n + 1) * count] for n in range(3))
     efforts = values[6 * count : 7 * count]
@@ -160,4 +160,4 @@ def joints(values: tuple[float, ...], count: int, payload: Bytes, sent: int) -> 
         for n in range(count)
     ]
     values_ = {"timestamp": timestamp(sent), "joints": told}
-    return Spelled(JOINTS, encode(JOINTS.schema, values_), b"", payload)
+    return Converted(JOINTS, encode(JOINTS.schema, values_), b"", payload)

@@ -13,7 +13,7 @@ from typing import Any
 
 from yarpy.errors import DecodeError
 from yarpy.kits.record.envelope import envelope_of, stamp_text
-from yarpy.kits.record.form.form import FORM, unspelled
+from yarpy.kits.record.form.form import FORM, restored
 from yarpy.kits.record.mcap.attachment import Attachment
 from yarpy.kits.record.mcap.layout import Channel, Damaged, Other
 from yarpy.kits.record.mcap.reader import McapFile
@@ -107,7 +107,7 @@ class McapStorage:
                 if form is None:
                     envelope, payload = envelope_of(stamped, sequence, sent, data)
                 else:
-                    payload, envelope = unspelled(form, data, stamped == "text")
+                    payload, envelope = restored(form, data, stamped == "text")
                     if stamped == "stamp":
                         envelope = stamp_text(sequence, sent)
             except DecodeError as error:

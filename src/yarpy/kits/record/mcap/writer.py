@@ -28,8 +28,8 @@ from typing import Any, Final, Self
 from yarpy import __version__
 from yarpy.errors import LocalProtocolError, UnknownPlugin
 from yarpy.kits.record.envelope import LENGTH, fields_of
+from yarpy.kits.record.form.converter import Converter
 from yarpy.kits.record.form.form import FORM, Form
-from yarpy.kits.record.form.spell import Spell
 from yarpy.kits.record.kind import kind_of
 from yarpy.kits.record.mcap.checksum import crc32
 from yarpy.kits.record.mcap.layout import MAGIC, MESSAGE, WHOLE_MESSAGE, Bytes, Other
@@ -78,7 +78,7 @@ class McapWriter:
         self._file = io.FileIO(path, "x")
         self.size = 0  # bytes in the file
         self.messages = 0
-        self._spell = None if plain else Spell()
+        self._converter = None if plain else Converter()
         self._channels: dict[tuple[Any, ...], int] = {}
         self._described: list[Any] = []  # all schemas and channels
         self._schemas: dict[tuple[str, bytes], int] = {}
@@ -120,8 +120,8 @@ class McapWriter:
         form, sequence, sent = fields_of(envelope, received, number)
         kind = kind_of(payload)
         text = envelope.encode("utf-8", "surrogateescape") if form == "text" else None
-        spell = self._spell
-        shown = None if spell is None else spell.spelled(port, kind, payload, sent)
+        converter = self._converter
+        shown = None if converter is None else converter.converted(port, kind, payload, sent)
         parts: tuple[Bytes, ...]
         if shown is not None:
             key: tuple[str, ...] = port, kind, form, shown.form.schema, shown.form.name

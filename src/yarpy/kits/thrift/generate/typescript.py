@@ -218,7 +218,7 @@ class _Module:
             return _literal("i32")
         if isinstance(what, StructText):
             return f"() => {self._reach(where, what.name, type_)}"
-        there = self if where is self.interface else _There(self.interface, where)
+        there = self if where is self.interface else _IncludedModule(self.interface, where)
         inner = ", ".join(there.kind(each) for each in what.inner)
         return f"{{{what.name}: {f'[{inner}]' if what.name == 'map' else inner}}}"
 
@@ -306,7 +306,7 @@ class _Module:
         return {one.name: one.number for one in getattr(found, "values", ())}
 
 
-class _There(_Module):
+class _IncludedModule(_Module):
     """Types as an included file spells them, mentioned in a module that includes it."""
 
     def __init__(self, here: Interface, there: Interface) -> None:

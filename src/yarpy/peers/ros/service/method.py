@@ -21,7 +21,7 @@ from typing import Any, Final, NamedTuple
 from yarpy.data.sig.image import Image
 from yarpy.data.value import Vocab
 from yarpy.errors import DecodeError, RemoteError
-from yarpy.kits.wrap.middleware import Failure, Item, Signature, Way
+from yarpy.kits.wrap.middleware import Binding, Failure, Item, Signature
 from yarpy.kits.wrap.value.array import Picture
 from yarpy.kits.wrap.value.shape import ANY, Nothing, Record, Row, Scalar, Several, Shape, Wired
 from yarpy.kits.wrap.value.tree import from_text, to_text
@@ -95,11 +95,11 @@ def topic_and_type(topic: str) -> tuple[str, str]:
 class Service:
     """A method's service over `types`. `kind` is its type."""
 
-    def __init__(self, way: Way, types: Types) -> None:
-        assert way.signature is not None
-        self.signature = way.signature
+    def __init__(self, binding: Binding, types: Types) -> None:
+        assert binding.signature is not None
+        self.signature = binding.signature
         self._types = types
-        self.topic, named = topic_and_type(way.topic)
+        self.topic, named = topic_and_type(binding.topic)
         if self.signature.variable:
             raise self._wrong(self.signature.variable, "a service has a fixed number of fields")
         named = named or _standard(self.signature)

@@ -8,6 +8,6 @@ the type hash and the bytes of ROS 2.
     library, source            types by name, and where their texts come from
 
 Rules: values are objects as those of ROS 1 are, and become values of YARP in the same way
-(`rosmsg/native.py`). Definitions and bytes may come from strangers; whatever they ask for has a
-limit.
+(`ros/message/convert/native.py`). Definitions and bytes may come from strangers; whatever they ask
+for has a limit.
 """

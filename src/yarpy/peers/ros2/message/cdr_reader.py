@@ -5,7 +5,7 @@
     count and units of UTF-16, four bytes each; a list uint32 count and elements; a message without
     fields is one byte
 
-Rules: as in `rosmsg/reader.py`: every count is checked against the bytes that are there, and
+Rules: as in `ros/message/reader.py`: every count is checked against the bytes that are there, and
 against the limit of elements, before memory is taken. Only DecodeError and Truncated come out.
 Arrays of numbers look at the bytes. Where the compiler knows how a position is aligned, padding
 costs nothing. Other spellings of CDR are made this one first. (OMG CDR, as rmw uses it: XCDR1

@@ -1,8 +1,8 @@
 """A message to the bytes of ROS 2: CDR, by a function for each type that is compiled once.
 
-Rules: as in `cdr_reader` and `rosmsg/writer.py`. Arrays of at least 4096 bytes become blocks of
-their own and are not copied. Whatever does not fit is looked for only then, by `fault`, which names
-the field.
+Rules: as in `cdr_reader` and `ros/message/writer.py`. Arrays of at least 4096 bytes become blocks
+of their own and are not copied. Whatever does not fit is looked for only then, by `fault`, which
+names the field.
 """
 
 from __future__ import annotations

@@ -3,8 +3,9 @@
     field = TYPE NAME [DEFAULT]    TYPE: builtin, Name, package/Name, string<=N; and [], [N], [<=N]
     const = TYPE NAME = VALUE      strings stand in quotes, or take the rest of the line
 
-Rules: as in `rosmsg/parse.py`, whose results these are; `#` begins a comment outside of quotes.
-What counts in the type hash keeps its spelling. (Language: rosidl, and REP 2016 for what it means.)
+Rules: as in `ros/message/parse.py`, whose results these are; `#` begins a comment outside of
+quotes. What counts in the type hash keeps its spelling. (Language: rosidl, and REP 2016 for what it
+means.)
 """
 
 from __future__ import annotations

@@ -1,8 +1,8 @@
 """The sources of the text of a type of ROS 2: installed packages, what rosbags brings, and a few
 that are always there (`standard`).
 
-Rules: as in `rosmsg/source.py`. Of the distributions that rosbags knows, the one of ROS_DISTRO is
-asked first; the others only for a type whose hash a peer has named.
+Rules: as in `ros/message/source.py`. Of the distributions that rosbags knows, the one of ROS_DISTRO
+is asked first; the others only for a type whose hash a peer has named.
 """
 
 from __future__ import annotations

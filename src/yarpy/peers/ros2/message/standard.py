@@ -1,7 +1,7 @@
 """The definitions that are always there in ROS 2: those of ROS 1 under its rules, what nodes ask
 each other for (types, parameters, actions), and the examples.
 
-Rules: declarations alone, as in `rosmsg/standard.py`.
+Rules: declarations alone, as in `ros/message/standard.py`.
 """
 
 from __future__ import annotations

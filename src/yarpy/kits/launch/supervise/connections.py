@@ -54,7 +54,7 @@ class Link:
         return self.state in ("connected", "off")
 
 
-class Keeper:
+class Connections:
     """Keeps connections from `start` to `close`."""
 
     def __init__(self, wanted: Sequence[Connection], names: NameClient | None = None) -> None:
@@ -64,7 +64,9 @@ class Keeper:
         self._wake = threading.Event()
         self._hurry = time.monotonic() + _HURRY
         self._pool = ThreadPoolExecutor(_WORKERS, "yarpy connections")
-        self._thread = threading.Thread(target=self._run, name="yarpy keeper", daemon=True)
+        self._thread = threading.Thread(
+            target=self._run, name="yarpy keep connections", daemon=True
+        )
 
     def start(self) -> None:
         """Begin, if there is anything to keep."""

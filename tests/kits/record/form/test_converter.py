@@ -10,7 +10,7 @@ from support.recordings import START, payload_of
 import yarpy
 from yarpy.data.bottle import Bottle
 from yarpy.data.value import Vocab
-from yarpy.kits.record.form.spell import Spell
+from yarpy.kits.record.form.converter import Converter
 from yarpy.kits.record.kind import kind_of
 from yarpy.kits.record.mcap.storage import McapStorage
 from yarpy.kits.record.mcap.writer import McapWriter
@@ -65,4 +65,4 @@ def test_plain(tmp_path: Path) -> None:
 
 
 def test_a_time_that_nobody_has_room_for() -> None:
-    assert Spell().spelled("/a", "yarp/bottle", payload_of([1]), 1 << 63) is None
+    assert Converter().converted("/a", "yarp/bottle", payload_of([1]), 1 << 63) is None

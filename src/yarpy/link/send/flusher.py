@@ -1,8 +1,8 @@
-"""Sweeper: a thread that sends what a burst left behind, if its writer does not come back.
+"""Flusher: a thread that sends what a burst left behind, if its writer does not come back.
 
 Rules: it does not know the connection; it is handed a callable, which takes the connection's lock
 for moments. The thread begins when there is something to do for the first time, so that whoever
-makes a sweeper can stop it whatever a signal handler does meanwhile. It sleeps while nothing is
+makes a flusher can stop it whatever a signal handler does meanwhile. It sleeps while nothing is
 left.
 """
 
@@ -18,11 +18,11 @@ from yarpy.threads import Thread
 GATHER_SECONDS: Final = 200e-6  # how long a burst's message may wait for others
 
 
-class Sweeper:
-    """`sweep` sends what is there, and says whether the burst may still go on."""
+class Flusher:
+    """`flush` sends what is there, and says whether the burst may still go on."""
 
-    def __init__(self, name: str, sweep: Callable[[], bool]) -> None:
-        self._sweep = sweep
+    def __init__(self, name: str, flush: Callable[[], bool]) -> None:
+        self._flush = flush
         self._wake = threading.Lock()  # free: there is something to do; a handler may free it
         self._wake.acquire()
         self._asleep = True
@@ -59,7 +59,7 @@ class Sweeper:
                 return
             while True:
                 time.sleep(GATHER_SECONDS)
-                if not self._sweep():
+                if not self._flush():
                     break
             self._asleep = True
-            self._sweep()
+            self._flush()

@@ -1,4 +1,4 @@
-"""Spell: writes the messages of ports in the form that most programs understand.
+"""Converter: writes the messages of ports in the form that most programs understand.
 
     yarp/image        foxglove.RawImage         yarp/vector, yarp/matrix    Float64MultiArray
     yarp/pointcloud   foxglove.PointCloud       lists of numbers            Float64MultiArray
@@ -12,7 +12,7 @@ costs next to nothing, and all others a few microseconds. What cannot be read is
 from __future__ import annotations
 
 from yarpy.kits.record.form import numbers, sensor
-from yarpy.kits.record.form.form import Bytes, Spelled
+from yarpy.kits.record.form.form import Bytes, Converted
 from yarpy.kits.record.form.line import line
 from yarpy.kits.record.form.structure import Structures
 from yarpy.kits.record.kind import BOTTLE
@@ -20,13 +20,13 @@ from yarpy.kits.record.kind import BOTTLE
 _LAST = (1 << 63) - 1  # nanoseconds that a time of Foxglove has room for
 
 
-class Spell:
-    """Spells the messages of one recording."""
+class Converter:
+    """Converts the messages of one recording."""
 
     def __init__(self) -> None:
         self._structures: dict[str, Structures] = {}
 
-    def spelled(self, port: str, kind: str, payload: Bytes, sent: int) -> Spelled | None:
+    def converted(self, port: str, kind: str, payload: Bytes, sent: int) -> Converted | None:
         """Return how a message is written; None for as it is. sent: nanoseconds since 1970."""
         if sent > _LAST:
             return None
@@ -43,7 +43,7 @@ class Spell:
             return sensor.cloud(payload, sent, port)
         return sensor.sound(payload, sent) if kind == "yarp/sound" else None
 
-    def _numbers(self, port: str, payload: Bytes, sent: int) -> Spelled | None:
+    def _numbers(self, port: str, payload: Bytes, sent: int) -> Converted | None:
         structures = self._structures.get(port)
         if structures is None:
             structures = self._structures[port] = Structures()
