@@ -6,6 +6,8 @@ a signal handler loses none. An object counts as so many bytes as its `size` say
 
 from __future__ import annotations
 
+from typing import ClassVar
+
 from yarpy.link.driver import Driver, is_foreign, link_error
 from yarpy.transports.base import ObjectTransport
 from yarpy.wire.stream import ObjectStream
@@ -14,7 +16,7 @@ from yarpy.wire.stream import ObjectStream
 class ObjectDriver(Driver):
     """A transport of objects and the stream in front of it."""
 
-    pushes = False
+    pushes: ClassVar[bool] = False
 
     def __init__(self, transport: ObjectTransport, stream: ObjectStream) -> None:
         super().__init__(transport, stream)

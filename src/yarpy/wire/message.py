@@ -113,7 +113,7 @@ class Packet:
     `key` is the port command: `D` data, `d` data with a reply wanted, `a` administrative.
     """
 
-    __slots__ = ("_blocks", "_forms", "_line", "envelope", "foreign", "framed", "key", "value")
+    __slots__ = ("_blocks", "_line", "envelope", "foreign", "forms", "framed", "key", "value")
 
     def __init__(self, value: object, envelope: bytes = b"", key: str = DATA) -> None:
         self.value = value
@@ -123,14 +123,8 @@ class Packet:
         self._line: bytes | None = None
         self.framed: list[Buffer] | None = None  # kept by the framing that several carriers share
         self.foreign: Buffer | None = None  # ... and by the payloads of those for other programs
-        self._forms: dict[object, Any] | None = None
-
-    @property
-    def forms(self) -> dict[object, Any]:
-        """A cache for carriers: what each made of the packet, under a key of its own."""
-        if self._forms is None:
-            self._forms = {}
-        return self._forms
+        #: a cache for carriers: what each made of the packet, under a key of its own
+        self.forms: dict[object, Any] = {}
 
     @property
     def blocks(self) -> tuple[Buffer, ...]:

@@ -1,5 +1,7 @@
 """Bodies of messages of ROS 2, from bytes alone."""
 
+import copy
+
 import numpy as np
 import pytest
 
@@ -7,8 +9,9 @@ import yarpy
 from yarpy import idl
 from yarpy.data import codec
 from yarpy.peers import ros2
-from yarpy.peers.ros2.body import encode_body, message_of, time_of, value_of
-from yarpy.wire.message import DATA, Encoded, Packet
+from yarpy.peers.ros.body import RosMessage
+from yarpy.peers.ros2.body import Ros2Message, encode_body, time_of, value_of
+from yarpy.wire.message import DATA, Encoded, Message, Packet
 
 String = ros2.load("std_msgs/msg/String")
 Image = ros2.load("sensor_msgs/msg/Image")
@@ -72,10 +75,26 @@ def test_time() -> None:
 
 
 def test_what_came() -> None:
-    plain = message_of(DATA, HI, String, False, 7, 1_500_000_000)
+    plain = Ros2Message(DATA, HI, String, False, 7, 1_500_000_000)
     assert (plain.value, plain.envelope) == ("hi", "7 1.500000000")
     picture = body(yarpy.Image(np.zeros((1, 1), "u1")), Image, b"7 12.25")
-    assert message_of(DATA, picture, Image, True, 3, 99).envelope == "3 12.250000000"
+    assert Ros2Message(DATA, picture, Image, True, 3, 99).envelope == "3 12.250000000"
     unsaid = body(Image(), Image)
-    assert message_of(DATA, unsaid, Image, True, 3, 2_000_000_000).envelope == "3 2.000000000"
-    assert message_of(DATA, b"", Image, True, 3, -5).envelope == ""
+    assert Ros2Message(DATA, unsaid, Image, True, 3, 2_000_000_000).envelope == "3 2.000000000"
+    assert Ros2Message(DATA, b"", Image, True, 3, -5).envelope == ""
+
+
+def test_what_came_begins_as_any_message_of_ros() -> None:
+    came, plain = Ros2Message(DATA, HI, String, False, 7, 0), RosMessage(DATA, HI, String, "7 0.0")
+    names = {*Message.__slots__, *RosMessage.__slots__} - {"envelope"}
+    assert {name: getattr(came, name) for name in names} == {
+        name: getattr(plain, name) for name in names
+    }
+
+
+def test_its_envelope_may_be_another() -> None:
+    came = Ros2Message(DATA, HI, String, False, 7, 1_500_000_000)
+    came.envelope = "said by a monitor"
+    assert came.envelope == "said by a monitor"
+    copied = copy.copy(Ros2Message(DATA, HI, String, False, 7, 1_500_000_000))
+    assert (copied.value, copied.envelope) == ("hi", "7 1.500000000")

@@ -336,10 +336,11 @@ class Inbound:
             if receiver.stage == SETTLED:
                 pass
             elif message.key == DATA:  # as `_take`, spelled out
-                try:
-                    receiver.settle(message)
-                except YarpError:
-                    pass  # the sender has gone: the next reader meets the same end
+                if receiver.acks or message.answer is not None:
+                    try:
+                        receiver.settle(message)
+                    except YarpError:
+                        pass  # the sender has gone: the next reader meets the same end
                 receiver.stage = SETTLED
             else:
                 self._take(message)

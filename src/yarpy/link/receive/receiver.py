@@ -54,6 +54,7 @@ class Receiver:
     def __init__(self, driver: Driver, carrier: Carrier) -> None:
         self.driver = driver
         self.carrier = carrier
+        self.acks = carrier.acks
         self.route: Route = carrier.route
         self.counter = Counter(since=time.time())
         stream = driver.stream

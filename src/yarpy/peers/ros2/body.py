@@ -16,7 +16,7 @@ from yarpy.data.value import Buffer
 from yarpy.peers.ros.body import RosMessage, said_by
 from yarpy.peers.ros.message.convert.native import to_message, to_value
 from yarpy.peers.ros.message.message import Message as Ros
-from yarpy.wire.message import UNSENDABLE, Encoded, Packet
+from yarpy.wire.message import UNSENDABLE, UNSET, Encoded, Packet
 
 _HEAD: Final = 4  # bytes in front of the fields
 _STAMP: Final = Struct("<iI")
@@ -91,17 +91,44 @@ def time_of(packet: Packet) -> int:
     return 0 if said is None else said[1] * _SECOND + said[2]
 
 
-def message_of(
-    key: str, body: Buffer, kind: type[Ros], headed: bool, number: int, time: int
-) -> RosMessage:
-    """Return the message for a body that was received. `headed`: it begins with a header; `number`,
-    `time`: those of the attachment."""
-    seconds, nanoseconds = divmod(time, _SECOND)
-    if headed and len(body) >= _HEAD + _STAMP.size:
-        said = _STAMP.unpack_from(body, _HEAD)
-        if said[0] >= 0 and said[1] < _SECOND and any(said):
-            seconds, nanoseconds = said
-    envelope = ""
-    if seconds >= 0:  # `%` is quicker than an f-string here
-        envelope = "%d %d.%09d" % (number & 0x7FFFFFFF, seconds, nanoseconds)  # noqa: UP031
-    return RosMessage(key, body, kind, envelope)
+class Ros2Message(RosMessage):
+    """A message that was received. `headed`: it begins with a header; `number`, `time`: those of
+    the attachment."""
+
+    __slots__ = ("_headed", "_number", "_said", "_time")
+
+    def __init__(
+        self, key: str, body: Buffer, kind: type[Ros], headed: bool, number: int, time: int
+    ) -> None:
+        # As `RosMessage` and `Message` do, spelled out: this is done for each message.
+        self.key = key
+        self.payload = body
+        self.spelling = "foreign"
+        self.text = self.source = ""
+        self.answer = self.type = self._ros = None
+        self._value = UNSET
+        self.kind = kind
+        self._headed, self._number, self._time = headed, number, time
+        self._said: str | None = None
+
+    @property
+    def envelope(self) -> str:
+        """The number, and the time in the header, else that of the attachment. Made when somebody
+        looks."""
+        said = self._said
+        if said is None:
+            said = self._said = self._envelope()
+        return said
+
+    @envelope.setter
+    def envelope(self, text: str) -> None:
+        self._said = text
+
+    def _envelope(self) -> str:
+        body = self.payload
+        seconds, nanoseconds = divmod(self._time, _SECOND)
+        if self._headed and len(body) >= _FIELDS:
+            said = _STAMP.unpack_from(body, _HEAD)
+            if said[0] >= 0 and said[1] < _SECOND and any(said):
+                seconds, nanoseconds = said
+        return f"{self._number & 0x7FFFFFFF} {seconds}.{nanoseconds:09d}" if seconds >= 0 else ""

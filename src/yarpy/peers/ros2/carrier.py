@@ -25,7 +25,7 @@ from yarpy.data.text import plain_text
 from yarpy.data.value import Vocab
 from yarpy.errors import DecodeError
 from yarpy.log import logger
-from yarpy.peers.ros2.body import encode_body, message_of, time_of, value_of
+from yarpy.peers.ros2.body import Ros2Message, encode_body, time_of, value_of
 from yarpy.peers.ros2.qos import WORDS
 from yarpy.route import Route
 from yarpy.wire.message import CALL, DATA, UNSENDABLE, Encoded, Message, Packet
@@ -168,11 +168,11 @@ class Subscriber(Ros2):
         topic = self.topic
         assert topic is not None
         kind = topic.kind
-        return message_of(DATA, came.body, kind, kind._has_header, came.number, came.time)
+        return Ros2Message(DATA, came.body, kind, kind._has_header, came.number, came.time)
 
     def decode(self, stream: ByteStream) -> Steps[Message]:
         came, kind = (yield from self.read_object(stream)), self.kind
-        return message_of(DATA, came.body, kind, kind._has_header, came.number, came.time)
+        return Ros2Message(DATA, came.body, kind, kind._has_header, came.number, came.time)
 
 
 class Asker(Ros2):
@@ -198,7 +198,7 @@ class Asker(Ros2):
         came = yield from self.read_object(stream)
         if came.failure:
             return failure(came.failure)
-        return message_of(CALL, came.body, self.kind.Response, False, came.number, came.time)
+        return Ros2Message(CALL, came.body, self.kind.Response, False, came.number, came.time)
 
 
 class Server(Ros2):
@@ -223,7 +223,7 @@ class Server(Ros2):
                 self.lost += 1
                 continue
             self._asked = came.asked
-            return message_of(CALL, came.body, self.kind.Request, False, came.number, came.time)
+            return Ros2Message(CALL, came.body, self.kind.Request, False, came.number, came.time)
 
     def encode_reply(self, stream: ByteStream, value: object) -> None:
         topic = self.topic

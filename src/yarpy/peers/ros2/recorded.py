@@ -11,7 +11,7 @@ from typing import Any, TypeAlias
 from yarpy.errors import DecodeError
 from yarpy.limit import ROS_FULL_TEXT
 from yarpy.peers.ros.message.convert.native import to_native
-from yarpy.peers.ros2.body import message_of
+from yarpy.peers.ros2.body import Ros2Message
 from yarpy.peers.ros2.message.action import plain_name
 from yarpy.peers.ros2.message.library import Library, default_library
 
@@ -36,7 +36,7 @@ def reader(name: str, language: str, text: str) -> Read:
     headed = kind._has_header
 
     def read(data: bytes) -> tuple[Any, Any, str]:
-        message = message_of("", data, kind, headed, 0, 0)
+        message = Ros2Message("", data, kind, headed, 0, 0)
         envelope = message.envelope if headed else ""
         return message.ros, to_native(message.ros), envelope
 
