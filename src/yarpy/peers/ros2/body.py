@@ -44,6 +44,11 @@ def encode_body(
         value: Any = packet.value
         if type(value) is kind and not packet.envelope:
             found = value.to_ros()
+        elif type(value) is str and kind._is_text:  # as below, without the steps to it
+            try:
+                found = kind(value).to_ros()
+            except UNSENDABLE as error:
+                raise _misfit(kind, error) from None
         else:
             found = _encode(packet, kind, now)
         forms[key] = found
@@ -51,20 +56,20 @@ def encode_body(
 
 
 def _encode(packet: Packet, kind: type[Ros], now: Callable[[], float] | None) -> tuple[Buffer, ...]:
-    value: Any = packet.value
+    value = value_of(packet)
     try:
-        if type(value) is str and kind._is_text:  # as `to_message`, without the steps to it
-            blocks: tuple[Buffer, ...] = kind(value).to_ros()
-            return blocks
-        value = value_of(packet)
         if isinstance(value, Ros):
             if (value._type, value._md5sum) == (kind._type, kind._md5sum):
                 return _stamped(value.to_ros(), kind, packet.envelope, None)
             value = to_value(value)  # of ROS 1, or another version: perhaps there is an Image in it
         made = to_message(value, kind)
     except UNSENDABLE as error:
-        raise type(error)(f"{kind._type} is expected here: {error}") from None
+        raise _misfit(kind, error) from None
     return _stamped(made.to_ros(), kind, packet.envelope, now)
+
+
+def _misfit(kind: type[Ros], error: Exception) -> Exception:
+    return type(error)(f"{kind._type} is expected here: {error}")
 
 
 def _stamped(

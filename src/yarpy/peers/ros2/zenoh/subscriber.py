@@ -174,18 +174,20 @@ class Subscriber(Endpoint):
                 self._refuse(data)
                 return None
             number, when, _, sender = UNPACK(data)  # as `parse_attachment`, spelled out
-            before = self._numbers.get(sender)
+            numbers = self._numbers
+            before = numbers.get(sender)
             if before is None:
                 firsts = self._firsts
                 before = (number if firsts is None else firsts.first(sender, number)) - 1
-            if number <= before and self._repeats:
-                return None
-            if number > before + 1:
-                self.dropped += number - before - 1
-                self.events.tell(Event(MESSAGE, number - before - 1))
-            if len(self._numbers) >= MOST_PUBLISHERS and sender not in self._numbers:
-                del self._numbers[next(iter(self._numbers))]  # one that flaps has many names
-            self._numbers[sender] = number
+                if len(numbers) >= MOST_PUBLISHERS:
+                    del numbers[next(iter(numbers))]  # one that flaps has many names
+            if number != before + 1:
+                if number <= before and self._repeats:
+                    return None
+                if number > before:
+                    self.dropped += number - before - 1
+                    self.events.tell(Event(MESSAGE, number - before - 1))
+            numbers[sender] = number
         return Incoming(sample.payload.to_bytes(), number, when)
 
     def _refuse(self, attached: bytes) -> None:
