@@ -4,6 +4,7 @@ library was recorded to write (`thrift_apache.py`)."""
 from __future__ import annotations
 
 import json
+import sys
 from functools import cache
 from types import ModuleType
 from typing import Any
@@ -108,6 +109,8 @@ def service() -> Any:
                 raise yarpy.YarpError("no")
             if how == 4:
                 raise ValueError("oops")
+            if how == 6:
+                sys.exit("leaving")
             if how == 5:
                 raise NotImplementedError
             return ",".join(self.fired)

@@ -36,7 +36,8 @@ from yarpy.kits.thrift.kind import namespace_of
 from yarpy.kits.thrift.method import Method, first_word
 from yarpy.kits.thrift.payload import FAILURE, VERSION, Payload, many
 from yarpy.kits.thrift.wire.cursor import spread
-from yarpy.log import logger
+from yarpy.log import log_failure, logger
+from yarpy.monitors.base import FAILURES
 
 log = logger("yarpy.idl")
 
@@ -105,7 +106,7 @@ class Service:
             result = function(*values)
             if isawaitable(result):
                 return self._finished(method, result, message, person)
-        except Exception as error:
+        except FAILURES as error:
             return self._failed(error, message, person)
         return self._answer(method, result, message, person)
 
@@ -126,7 +127,7 @@ class Service:
     ) -> Any:
         try:
             found = await result
-        except Exception as error:
+        except FAILURES as error:
             return self._failed(error, message, person)
         return self._answer(method, found, message, person)
 
@@ -207,7 +208,7 @@ class Service:
         known = ", ".join([*self._methods][:8]) + (" ..." if len(self._methods) > 8 else "")
         raise DecodeError(f'no method "{name[:60]}": there are {known}; send help for all')
 
-    def _reason(self, error: Exception, message: Any) -> tuple[str, str]:
+    def _reason(self, error: Exception | SystemExit, message: Any) -> tuple[str, str]:
         """Log why a request has failed; the type of an exception, "" for a refusal, and a text."""
         kind = ""
         if isinstance(error, YarpError) and not isinstance(error, RemoteError):
@@ -220,12 +221,11 @@ class Service:
             failed = error_of(answer_of(error))
             assert failed is not None
             kind, reason = failed.type, failed.text
-            log.error(
-                "%s failed on a request of %s", type(self).__name__, message.source, exc_info=error
-            )
+            words = (type(self).__name__, message.source)
+            log_failure(log, error, "%s failed on a request of %s", *words)
         return kind, reason
 
-    def _failed(self, error: Exception, message: Any, person: bool) -> Any:
+    def _failed(self, error: Exception | SystemExit, message: Any, person: bool) -> Any:
         kind, reason = self._reason(error, message)
         if not message.wants_reply:
             return None

@@ -56,6 +56,8 @@ def test_the_latest_time_is_that_of_all(buffer: Buffer) -> None:
     assert buffer.lookup("map", "arm").time == 102.5
     assert buffer.lookup("map", "base").time == 104.0
     assert buffer.lookup("base", "camera").time == 0.0
+    assert buffer.lookup("base", "base").time == 104.0  # as in tf2
+    assert buffer.lookup("camera", "camera").time == buffer.lookup("map", "map").time == 0.0
 
 
 @pytest.mark.parametrize(

@@ -24,6 +24,7 @@ from yarpy.kits.thrift.apache.protocol import (
 )
 from yarpy.kits.thrift.method import Method
 from yarpy.kits.thrift.structure import default_of
+from yarpy.monitors.base import FAILURES
 
 
 def answer(service: Any, call: Call) -> Any:
@@ -42,7 +43,7 @@ def answer(service: Any, call: Call) -> Any:
         result = getattr(service, method.attribute)(*values)
         if isawaitable(result):
             return _finished(service, method, result, call)
-    except Exception as error:
+    except FAILURES as error:
         return _failed(service, method, error, call)
     return _returned(service, method, result, call)
 
@@ -50,7 +51,7 @@ def answer(service: Any, call: Call) -> Any:
 async def _finished(service: Any, method: Method, result: Awaitable[Any], call: Call) -> Answer:
     try:
         found = await result
-    except Exception as error:
+    except FAILURES as error:
         return _failed(service, method, error, call)
     return _returned(service, method, found, call)
 
@@ -88,7 +89,7 @@ def _returned(service: Any, method: Method, result: Any, call: Call) -> Answer:
     return Answer(REPLY, bytes(writer.out), lambda: method.answer(result))
 
 
-def _failed(service: Any, method: Method, error: Exception, call: Call) -> Answer:
+def _failed(service: Any, method: Method, error: Exception | SystemExit, call: Call) -> Answer:
     """The answer that tells of an exception."""
     for number, kind in method.throws.items():
         if isinstance(error, kind) and not method.oneway:

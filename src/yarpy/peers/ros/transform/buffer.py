@@ -154,7 +154,10 @@ class Buffer:
         )
 
     def _common(self, target: str, source: str) -> int:
-        """The latest time that all moving frames on the way have; 0 where none moves."""
+        """The latest time that all moving frames on the way have; 0 where none moves. As in tf2 a
+        frame is on the way to itself."""
+        if target == source and target in self._moments and target not in self._fixed:
+            return self._moments[target][-1].time
         chains = [self._latest(name) for name in (source, target)]
         shared = {name for name, _ in chains[0]} & {name for name, _ in chains[1]}
         times = []
