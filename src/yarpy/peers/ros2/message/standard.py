@@ -9,7 +9,29 @@ from __future__ import annotations
 from typing import Final
 
 from yarpy.peers.ros.message import standard
+from yarpy.peers.ros.message.shipped import geometry
 from yarpy.peers.ros.message.shipped.action import spelled
+
+#: messages of example_interfaces, which are those of std_msgs but for its Header and ColorRGBA
+_EXAMPLES: Final = {
+    **{
+        f"{name}MultiArray": f"MultiArrayLayout layout; {name.lower()}[] data"
+        for name in ("Byte", "Float32", "Float64", "Int8", "Int16", "Int32", "Int64")
+    },
+    **{
+        f"U{name}MultiArray": f"MultiArrayLayout layout; u{name.lower()}[] data"
+        for name in ("Int8", "Int16", "Int32", "Int64")
+    },
+    **{
+        name: f"{name.lower()} data"
+        for name in ("Bool", "Byte", "Char", "Float32", "Float64", "String", "WString")
+    },
+    **{name: f"{name.lower()} data" for name in ("Int8", "Int16", "Int32", "Int64")},
+    **{f"U{name}": f"u{name.lower()} data" for name in ("Int8", "Int16", "Int32", "Int64")},
+    "Empty": "",
+    "MultiArrayDimension": "string label; uint32 size; uint32 stride",
+    "MultiArrayLayout": "MultiArrayDimension[] dim; uint32 data_offset",
+}
 
 MESSAGES: Final = {
     **{
@@ -43,6 +65,7 @@ string raw_file_contents
     **{
         name: spelled(text)
         for name, text in {
+            **{f"example_interfaces/{name}": text for name, text in _EXAMPLES.items()},
             "rmw_dds_common/Gid": "char[16] data",
             "rmw_dds_common/NodeEntitiesInfo": (
                 "string<=256 node_namespace; string<=256 node_name; Gid[] reader_gid_seq; "
@@ -134,6 +157,22 @@ KeyValue[] extra_information
                 "GoalInfo goal_info; ---; int8 ERROR_NONE=0; int8 ERROR_REJECTED=1; "
                 "int8 ERROR_UNKNOWN_GOAL_ID=2; int8 ERROR_GOAL_TERMINATED=3; "
                 "int8 return_code; GoalInfo[] goals_canceling"
+            ),
+            # Of packages whose messages rosbags brings, or an installed ROS.
+            **{
+                name: text
+                for name, text in geometry.SERVICES.items()
+                if name.startswith(("nav_msgs/", "tf2_msgs/"))
+            },
+            "diagnostic_msgs/AddDiagnostics": (
+                "string load_namespace; ---; bool success; string message"
+            ),
+            "diagnostic_msgs/SelfTest": "---; string id; byte passed; DiagnosticStatus[] status",
+            "sensor_msgs/SetCameraInfo": (
+                "sensor_msgs/CameraInfo camera_info; ---; bool success; string status_message"
+            ),
+            "visualization_msgs/GetInteractiveMarkers": (
+                "---; uint64 sequence_number; InteractiveMarker[] markers"
             ),
             "example_interfaces/SetBool": "bool data; ---; bool success; string message",
             "example_interfaces/Trigger": "---; bool success; string message",
