@@ -17,8 +17,8 @@ from support.wait import HANG, wait_until
 import yarpy
 from yarpy.port import preparing
 from yarpy.transports.shared.arena import arena_of
-from yarpy.transports.shared.lease import HEADROOM, lease_type
 from yarpy.transports.shared.sealed import available
+from yarpy.transports.shared.shared_array import HEADROOM, shared_array_type
 
 ECHO = """
 import yarpy
@@ -158,7 +158,7 @@ def test_there_and_back_without_a_copy(
             found = message.as_(yarpy.Image).array
             assert (found == number).all()
             # Only who looks at the very same memory sees what its writer does against the rules.
-            assert isinstance(array.base, lease_type())
+            assert isinstance(array.base, shared_array_type())
             arena_.view[array.base.offset + HEADROOM] = 200
             assert found[0, 0] == 200
             del found, message

@@ -13,7 +13,7 @@ from functools import partial
 from typing import TYPE_CHECKING, Any, ClassVar, Generic, TypeVar, Unpack
 
 from yarpy.aio.base import BasePort
-from yarpy.aio.inbox import TaskRendezvous
+from yarpy.aio.mailbox import TaskRendezvous
 from yarpy.aio.thread import Turn, in_thread, left_until
 from yarpy.aio.wakeup import LONGEST_RUN
 from yarpy.data.stamp import Stamp

@@ -27,7 +27,7 @@ from yarpy.port.options import PortOptions
 from yarpy.port.reader import Reader
 from yarpy.port.typed import of_type
 from yarpy.scope import ASKING, apart
-from yarpy.transports.shared.lease import freeze
+from yarpy.transports.shared.shared_array import freeze
 from yarpy.wire.message import CALL, Message, Packet, T
 
 if TYPE_CHECKING:

@@ -12,8 +12,8 @@ from typing import TYPE_CHECKING, Any
 
 from yarpy.errors import LocalProtocolError
 from yarpy.transports.shared.arena import Arena, arena_of
-from yarpy.transports.shared.lease import HEADROOM, lease_type
 from yarpy.transports.shared.sealed import available
+from yarpy.transports.shared.shared_array import HEADROOM, shared_array_type
 from yarpy.wire.stream import LARGE
 
 if TYPE_CHECKING:
@@ -39,17 +39,17 @@ class Preparing:
         if min(lengths, default=0) < 0:
             raise ValueError(f"an array of the shape {lengths} has a negative length")
         size = kind.itemsize * math.prod(lengths)
-        lease = None
+        shared = None
         if size >= LARGE and available():
             try:
                 self._arena = self._arena or arena_of(name)
-                lease = self._arena.prepare(size)
+                shared = self._arena.prepare(size)
             except LocalProtocolError:
                 pass  # no descriptor is left
-        if lease is None:
-            lease = lease_type()(HEADROOM + size, "u1")
+        if shared is None:
+            shared = shared_array_type()(HEADROOM + size, "u1")
         self.begun = True
-        return np.ndarray(lengths, kind, lease, HEADROOM)
+        return np.ndarray(lengths, kind, shared, HEADROOM)
 
     def end(self) -> None:
         """The port closes."""

@@ -12,16 +12,16 @@ from support.wait import HANG
 import yarpy
 from yarpy import registry, wrap
 from yarpy.kits.wrap.flow import Inlets, Outlets
-from yarpy.kits.wrap.inbox import Inbox
 from yarpy.kits.wrap.method import Method, Output
 from yarpy.kits.wrap.middleware import Binding, Received
+from yarpy.kits.wrap.receive_queue import ReceiveQueue
 
 
 class Air:
     """A middleware in which everything stays."""
 
     name = "air"
-    topics: dict[str, Inbox] = {}
+    topics: dict[str, ReceiveQueue] = {}
     sent: list[Any] = []
     heard = True
 
@@ -32,7 +32,9 @@ class Air:
         return Voice(binding)
 
     def listener(self, binding: Binding, shape: Any) -> Any:
-        return Ear(self.topics.setdefault(binding.topic + binding.place, Inbox("all")), binding)
+        return Ear(
+            self.topics.setdefault(binding.topic + binding.place, ReceiveQueue("all")), binding
+        )
 
 
 class Voice:
@@ -55,16 +57,16 @@ class Voice:
 class Ear:
     stats = {"messages": 2}
 
-    def __init__(self, inbox: Inbox, binding: Binding) -> None:
-        self.inbox, self.binding = inbox, binding
+    def __init__(self, queue: ReceiveQueue, binding: Binding) -> None:
+        self.queue, self.binding = queue, binding
 
     def listen(self, timeout: float | None) -> Received:
-        found = self.inbox.take(timeout)
+        found = self.queue.take(timeout)
         found.middleware = self.binding.place
         return found
 
     def close(self) -> None:
-        self.inbox.close()
+        self.queue.close()
 
 
 @pytest.fixture(autouse=True)

@@ -17,9 +17,9 @@ from yarpy.errors import LocalProtocolError
 from yarpy.transports.descriptor import owned
 from yarpy.transports.shared import arena as module
 from yarpy.transports.shared.arena import PAGE, Arena, arena_of
-from yarpy.transports.shared.lease import HEADROOM
 from yarpy.transports.shared.loan import LEDGER, Borrower, Placed
 from yarpy.transports.shared.sealed import F_ADD_SEALS, available, sealed_memory
+from yarpy.transports.shared.shared_array import HEADROOM
 
 fcntl: Any = pytest.importorskip("fcntl", reason="only Unix seals memory")
 pytestmark = pytest.mark.skipif(not available(), reason="this system has no such memory")
@@ -264,16 +264,16 @@ def test_what_cannot_be_mapped_is_closed(monkeypatch: pytest.MonkeyPatch) -> Non
 
 def test_room_that_a_program_fills_itself(peer: Peer) -> None:
     arena = Arena("/out", 1 << 20)
-    lease = arena.prepare(20000)
-    lease[HEADROOM:] = 7
-    placed = arena.place([b"head", memoryview(lease)[HEADROOM:]], 20004)
+    shared = arena.prepare(20000)
+    shared[HEADROOM:] = 7
+    placed = arena.place([b"head", memoryview(shared)[HEADROOM:]], 20004)
     assert placed is not None
     assert os.pread(arena.number, placed.size, placed.offset) == b"head" + bytes([7]) * 20000
     assert placed.offset == HEADROOM - 4  # nothing was copied
-    assert not lease.flags.writeable
+    assert not shared.flags.writeable
     arena.lend(placed, peer.reader)
     held = placed.slot, placed.generation
-    del placed, lease
+    del placed, shared
     assert arena.used == 1
     second = arena.prepare(20000)
     assert second.offset > 0  # the first is still looked at
@@ -309,12 +309,12 @@ def test_it_ends_while_readers_still_look(peer: Peer) -> None:
     try:
         arena = Arena("/out", 1 << 20)
         lent(arena, peer)
-        lease = arena.prepare(20000)
-        placed = arena.place([memoryview(lease)[HEADROOM:]], 20000)
+        shared = arena.prepare(20000)
+        placed = arena.place([memoryview(shared)[HEADROOM:]], 20000)
         assert placed is not None
         arena.lend(placed, peer.reader)
         number = arena.number
-        del placed, lease, arena
+        del placed, shared, arena
         with pytest.raises(OSError):
             os.fstat(number)
     finally:

@@ -15,9 +15,9 @@ from dataclasses import replace
 from typing import Any, Final
 
 from yarpy.errors import Timeout
-from yarpy.kits.wrap.inbox import Inbox, pump
 from yarpy.kits.wrap.method import Method, Missing, Output, middleware_of
 from yarpy.kits.wrap.middleware import Item, Keep, Listener, Publisher, Received
+from yarpy.kits.wrap.receive_queue import ReceiveQueue, pump
 from yarpy.kits.wrap.value.shape import Shape
 
 SET: Final = 64  # values of each topic that wait for those of the others
@@ -132,7 +132,7 @@ class Inlet:
         if together:  # the newest of one is rarely that of the others
             output = replace(output, keep="all")
         self._listeners: list[Listener] = []
-        self._inbox: Inbox | None = None
+        self._queue: ReceiveQueue | None = None
         self._lock = threading.Lock()  # of the decision to read ahead
         try:
             for binding in output.bindings(topic):
@@ -143,18 +143,18 @@ class Inlet:
         if together or len(self._listeners) > 1:
             self.read_ahead()
 
-    def read_ahead(self) -> Inbox:
-        """From now on threads read, and what came waits in an inbox."""
+    def read_ahead(self) -> ReceiveQueue:
+        """From now on threads read, and what came waits in a queue."""
         with self._lock:
-            if self._inbox is None:
-                self._inbox = Inbox(self._keep)
+            if self._queue is None:
+                self._queue = ReceiveQueue(self._keep)
                 for listener in self._listeners:
-                    pump(listener, self._inbox, self.topic)
-            return self._inbox
+                    pump(listener, self._queue, self.topic)
+            return self._queue
 
     def listen(self, timeout: float | None) -> Received:
-        inbox = self._inbox
-        found = self._listeners[0].listen(timeout) if inbox is None else inbox.take(timeout)
+        queue = self._queue
+        found = self._listeners[0].listen(timeout) if queue is None else queue.take(timeout)
         self.last = found
         return found
 
@@ -170,8 +170,8 @@ class Inlet:
         ]
 
     def close(self) -> None:
-        if self._inbox is not None:
-            self._inbox.close()
+        if self._queue is not None:
+            self._queue.close()
         for listener in self._listeners:
             listener.close()
 

@@ -13,8 +13,8 @@ from queue import SimpleQueue
 from typing import Any
 
 from yarpy.errors import LinkClosed, PortClosed, Timeout, UnknownName
-from yarpy.kits.wrap.inbox import Inbox
 from yarpy.kits.wrap.middleware import Answer, Binding, Failure, Item, Received, question_of
+from yarpy.kits.wrap.receive_queue import ReceiveQueue
 from yarpy.kits.wrap.value import payload
 from yarpy.kits.wrap.value.shape import Shape
 from yarpy.log import logger
@@ -109,13 +109,13 @@ class ZenohListener:
         self.messages = 0
         self._binding = binding
         self._shape = shape
-        self._inbox = Inbox(binding.keep)
+        self._queue = ReceiveQueue(binding.keep)
         self._shared: SharedSession | None = share(binding.place)
 
         def heard(sample: Any) -> None:
             self.messages += 1
-            if not self._inbox.closed:
-                self._inbox.put(Received(sample.payload.to_bytes()))
+            if not self._queue.closed:
+                self._queue.put(Received(sample.payload.to_bytes()))
 
         self._subscriber: Any = self._shared.session.declare_subscriber(
             key_of(binding), Callback(heard, indirect=False)
@@ -123,7 +123,7 @@ class ZenohListener:
 
     def listen(self, timeout: float | None) -> Received:
         try:
-            data = self._inbox.take(timeout).value
+            data = self._queue.take(timeout).value
         except Timeout:
             raise Timeout(
                 f'nothing came from "{self._binding.topic}" within {timeout:.3g} s'
@@ -134,10 +134,10 @@ class ZenohListener:
 
     @property
     def stats(self) -> dict[str, Any]:
-        return {"messages": self.messages, "drops": self._inbox.drops}
+        return {"messages": self.messages, "drops": self._queue.drops}
 
     def close(self) -> None:
-        self._inbox.close()
+        self._queue.close()
         if self._shared is not None:
             self._subscriber.undeclare()
             self._shared.close()

@@ -30,9 +30,15 @@ from yarpy.data.python.loaded import loaded
 from yarpy.errors import LocalProtocolError
 from yarpy.log import logger
 from yarpy.transports.shared.cgroup import free_memory
-from yarpy.transports.shared.lease import HEADROOM, Source, address_of, lease_type, place_of
 from yarpy.transports.shared.loan import SLOTS, Borrower, Loan, Placed
 from yarpy.transports.shared.sealed import forbid_writing, sealed_memory
+from yarpy.transports.shared.shared_array import (
+    HEADROOM,
+    Source,
+    address_of,
+    place_of,
+    shared_array_type,
+)
 from yarpy.wire.stream import Buffer
 
 log = logger("yarpy.transports")
@@ -173,9 +179,9 @@ class Arena:
             extent = self._take(HEADROOM + size)
         if extent is None:
             return None
-        lease = lease_type()(HEADROOM + size, "u1", self._memory, extent.offset)
-        lease.source, lease.offset, lease.room = self, extent.offset, extent
-        return lease
+        shared = shared_array_type()(HEADROOM + size, "u1", self._memory, extent.offset)
+        shared.source, shared.offset, shared.room = self, extent.offset, extent
+        return shared
 
     def lend(self, placed: Placed, reader: Borrower) -> bool:
         """`reader` is about to be told of it; False if it was already."""

@@ -19,9 +19,9 @@ from typing import Final
 
 from yarpy.errors import RemoteProtocolError
 from yarpy.transports.descriptor import Descriptor, owned
-from yarpy.transports.shared.lease import LENDERS, address_of, lease_type
 from yarpy.transports.shared.loan import LEDGER, SLOTS
 from yarpy.transports.shared.sealed import F_GET_SEALS, F_SEAL_SHRINK, sealed_memory
+from yarpy.transports.shared.shared_array import LENDERS, address_of, shared_array_type
 
 LARGEST: Final = 1 << 32  # bytes of a file that we map
 OTHERS: Final = 8  # files of other programs that one sender shows us at a time
@@ -83,10 +83,10 @@ class Borrowed:
             raise RemoteProtocolError(
                 f"a payload of {size} bytes at {offset} of memory that has {shown.size}"
             )
-        lease = lease_type()(size, "u1", shown.memory, offset)
-        lease.source, lease.offset = shown, offset
-        view, ended = memoryview(lease), partial(self.give_back, slot, generation)
-        lease.ended = ended  # last: what is taken and not returned is given back, and gone
+        shared = shared_array_type()(size, "u1", shown.memory, offset)
+        shared.source, shared.offset = shown, offset
+        view, ended = memoryview(shared), partial(self.give_back, slot, generation)
+        shared.ended = ended  # last: what is taken and not returned is given back, and gone
         return view
 
     def give_back(self, slot: int, generation: int) -> None:

@@ -12,7 +12,7 @@ import os
 from typing import Final
 
 from yarpy.transports.descriptor import Descriptor
-from yarpy.transports.shared.lease import Source
+from yarpy.transports.shared.shared_array import Source
 
 SLOTS: Final = 256  # of one arena
 LEDGER: Final = 4 * SLOTS  # bytes: for each slot the generation that was given back last

@@ -29,9 +29,9 @@ from yarpy.transports.descriptor import has_input, opened_pair
 from yarpy.transports.opener import MeetingPlace, Opener
 from yarpy.transports.shared.arena import Arena, arena_of, tidy
 from yarpy.transports.shared.borrowed import OTHERS, Borrowed, Shown, adopted
-from yarpy.transports.shared.lease import Source
 from yarpy.transports.shared.loan import LEDGER, Borrower, Placed
 from yarpy.transports.shared.sealed import available, sealed_memory
+from yarpy.transports.shared.shared_array import Source
 from yarpy.transports.socket_transport import MSG_DONTWAIT
 from yarpy.transports.tcp import TcpTransport
 from yarpy.transports.unix import UnixTransport

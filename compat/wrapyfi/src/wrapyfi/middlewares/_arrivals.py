@@ -11,8 +11,8 @@ from contextlib import suppress
 from typing import Any
 
 import yarpy
-from yarpy.kits.wrap.inbox import Inbox
 from yarpy.kits.wrap.middleware import Failure, Received
+from yarpy.kits.wrap.receive_queue import ReceiveQueue
 
 #: pictures and sounds, or values, that a listener has not taken yet
 KEPT = (10, 100)
@@ -25,11 +25,11 @@ class Arrivals:
     def __init__(self, side: Any, usual: int | str = 0) -> None:
         self._came_to = side.in_topic
         keep = side.options.get("queue_size") or usual or KEPT[side.kind == "NativeObject"]
-        self._inbox = Inbox(max(int(keep), 1))
+        self._queue = ReceiveQueue(max(int(keep), 1))
 
     def arrived(self, came: Any) -> None:
         with suppress(yarpy.PortClosed):
-            self._inbox.put(Received(came))
+            self._queue.put(Received(came))
 
     def wait(self, seconds: float) -> bool:
         """Publishers are not waited for, as it was."""
@@ -37,16 +37,16 @@ class Arrivals:
 
     def receive(self, timeout: float | None) -> Any:
         try:
-            return self._inbox.take(timeout).value
+            return self._queue.take(timeout).value
         except yarpy.Timeout:
             raise yarpy.Timeout(f'nothing came from "{self._came_to}"') from None
 
     @property
     def closed(self) -> bool:
-        return self._inbox.closed
+        return self._queue.closed
 
     def close(self) -> None:
-        self._inbox.close()
+        self._queue.close()
 
 
 class RequestQueue:

@@ -1,4 +1,4 @@
-"""Inboxes: what listeners have received and nobody has taken yet; threads and event loops wait.
+"""Receive queues: what listeners heard and nobody has taken yet; threads and event loops wait.
 
 Rules: with `keep="latest"` the newest replaces what was there, with a number so many are kept, the
 oldest go; with "all" the one who delivers waits while `FULL` are there. What goes is counted.
@@ -19,7 +19,7 @@ from yarpy.kits.wrap.middleware import Keep, Listener, Received
 FULL: Final = 10_000
 
 
-class Inbox:
+class ReceiveQueue:
     """Values from any number of listeners, or the errors that came in place of one."""
 
     def __init__(self, keep: Keep) -> None:
@@ -114,8 +114,8 @@ class Inbox:
             self._wake()
 
 
-def pump(listener: Listener, inbox: Inbox, name: str) -> threading.Thread:
-    """A thread that brings what `listener` hears to `inbox`, until one of them is closed."""
+def pump(listener: Listener, queue: ReceiveQueue, name: str) -> threading.Thread:
+    """A thread that brings what `listener` hears to `queue`, until one of them is closed."""
 
     def run() -> None:
         while True:
@@ -126,7 +126,7 @@ def pump(listener: Listener, inbox: Inbox, name: str) -> threading.Thread:
             except Exception as error:
                 found = error
             try:
-                inbox.put(found)
+                queue.put(found)
             except PortClosed:
                 return
 

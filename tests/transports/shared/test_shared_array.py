@@ -1,4 +1,4 @@
-"""Lease: how the memory that bytes lie in is found again, and when it is not."""
+"""Shared arrays: how the memory that bytes lie in is found again, and when it is not."""
 
 from __future__ import annotations
 
@@ -11,7 +11,13 @@ import pytest
 
 import yarpy
 from yarpy.data import codec
-from yarpy.transports.shared.lease import HEADROOM, address_of, freeze, lease_type, place_of
+from yarpy.transports.shared.shared_array import (
+    HEADROOM,
+    address_of,
+    freeze,
+    place_of,
+    shared_array_type,
+)
 
 SIZE = 1 << 17
 
@@ -25,10 +31,10 @@ class Memory:
         self.file = mmap.mmap(-1, SIZE)
         self.address = address_of(self.file)
 
-    def lease(self, offset: int = 0, size: int = SIZE) -> Any:
-        lease = lease_type()(size, "u1", self.file, offset)
-        lease.source, lease.offset = self, offset
-        return lease
+    def shared(self, offset: int = 0, size: int = SIZE) -> Any:
+        shared = shared_array_type()(size, "u1", self.file, offset)
+        shared.source, shared.offset = self, offset
+        return shared
 
 
 @pytest.fixture
@@ -37,26 +43,26 @@ def memory() -> Memory:
 
 
 def test_the_bytes_themselves(memory: Memory) -> None:
-    lease = memory.lease(4096, 50000)
-    assert place_of([memoryview(lease)]) == (memory, 4096, lease)
-    assert place_of([memoryview(lease)[10:30000]]) == (memory, 4106, lease)
+    shared = memory.shared(4096, 50000)
+    assert place_of([memoryview(shared)]) == (memory, 4096, shared)
+    assert place_of([memoryview(shared)[10:30000]]) == (memory, 4106, shared)
 
 
 def test_arrays_of_arrays(memory: Memory) -> None:
-    lease = memory.lease(4096, 50000)[1:]
-    array = np.frombuffer(memoryview(memory.lease(4096, 100000)), "u2", 40000, 200)
+    shared = memory.shared(4096, 50000)[1:]
+    array = np.frombuffer(memoryview(memory.shared(4096, 100000)), "u2", 40000, 200)
     block = array.reshape(200, 200)[20:120].data.cast("B")
     found = place_of([block])
     assert found is not None
     assert found[:2] == (memory, 4096 + 200 + 20 * 400)
-    assert place_of([memoryview(lease)]) is None  # numpy made that, of ours
+    assert place_of([memoryview(shared)]) is None  # numpy made that, of ours
 
 
 def test_a_received_picture(memory: Memory) -> None:
     """Its head lies in front of the pixels already."""
     payload = b"".join(yarpy.Image(np.ones((200, 200), "u1")).to_wire())
     memory.file[512 : 512 + len(payload)] = payload
-    image = codec.decode(memoryview(memory.lease(512, len(payload))))
+    image = codec.decode(memoryview(memory.shared(512, len(payload))))
     found = place_of(codec.encode(image))
     assert found is not None
     assert found[:2] == (memory, 512)
@@ -70,30 +76,30 @@ def test_a_received_picture(memory: Memory) -> None:
 
 def test_other_bytes(memory: Memory) -> None:
     array = np.zeros(SIZE, "u1")
-    lease = lease_type()(SIZE, "u1")
+    shared = shared_array_type()(SIZE, "u1")
     assert place_of([]) is None
     assert place_of([b"x" * SIZE]) is None
     assert place_of([memoryview(bytearray(SIZE))]) is None
     assert place_of([array.data]) is None
-    assert place_of([memoryview(lease)]) is None  # in place of shared memory
-    assert place_of([memoryview(memory.lease())[:100]]) is None
-    assert place_of([memoryview(memory.lease()), b"tail"]) is None
-    assert place_of([b"head", memoryview(memory.lease())]) is None  # that would be in front of it
-    assert place_of([b"x" * (HEADROOM + 1), memoryview(memory.lease())[1000:]]) is None
+    assert place_of([memoryview(shared)]) is None  # in place of shared memory
+    assert place_of([memoryview(memory.shared())[:100]]) is None
+    assert place_of([memoryview(memory.shared()), b"tail"]) is None
+    assert place_of([b"head", memoryview(memory.shared())]) is None  # that would be in front of it
+    assert place_of([b"x" * (HEADROOM + 1), memoryview(memory.shared())[1000:]]) is None
 
 
 def test_what_was_written_cannot_be_changed(memory: Memory) -> None:
-    lease = memory.lease()
-    array = np.ndarray((200, 200), "u1", lease, HEADROOM)
+    shared = memory.shared()
+    array = np.ndarray((200, 200), "u1", shared, HEADROOM)
     rows = array[10:]
     freeze(None, [b"head", rows.data.cast("B")])
-    assert not any(one.flags.writeable for one in (array, rows, lease))
+    assert not any(one.flags.writeable for one in (array, rows, shared))
     with pytest.raises(ValueError, match="read-only"):
         rows[0, 0] = 1
     freeze(None, [])
     freeze(None, [b"x"])
     freeze(None, [memoryview(bytearray(SIZE))])
-    small = np.ndarray((2, 2), "u1", memory.lease(), HEADROOM)
+    small = np.ndarray((2, 2), "u1", memory.shared(), HEADROOM)
     freeze(small, [small.tobytes()])
     assert not small.flags.writeable
     own = np.zeros(5)
@@ -103,10 +109,10 @@ def test_what_was_written_cannot_be_changed(memory: Memory) -> None:
 
 def test_the_end_is_told(memory: Memory) -> None:
     ends: list[int] = []
-    lease = memory.lease()
-    lease.ended = partial(ends.append, 5)
-    view = np.frombuffer(memoryview(lease), "u1")[5:]
-    del lease
+    shared = memory.shared()
+    shared.ended = partial(ends.append, 5)
+    view = np.frombuffer(memoryview(shared), "u1")[5:]
+    del shared
     assert ends == []
     del view
     assert ends == [5]

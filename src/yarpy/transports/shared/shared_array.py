@@ -1,4 +1,4 @@
-"""Lease: the array that every view of shared memory comes from, and how it is found again.
+"""Shared array: the one that every view of shared memory comes from, and how it is found again.
 
 Rules: it says in whose memory it lies, and where. It lives for as long as any view of it: then what
 was received is given back, and room that a program has filled itself is free again. Bytes that are
@@ -58,14 +58,14 @@ def _leave_to_parent() -> None:
 
 fork.after_in_child(_leave_to_parent)
 
-Place: TypeAlias = tuple[Source, int, object]
+Location: TypeAlias = tuple[Source, int, object]
 """The place of a payload in memory: its source, the offset there, and what keeps it there."""
 
 
 _MADE: Final[dict[str, Any]] = {}  # the class, once somebody wants one
 
 
-def lease_type() -> Any:
+def shared_array_type() -> Any:
     """The class: an array, since these can be over a part of a file."""
     return _MADE.get("class") or _MADE.setdefault("class", _make())
 
@@ -73,7 +73,7 @@ def lease_type() -> Any:
 def _make() -> Any:
     np = imported("numpy")
 
-    class Lease(np.ndarray):  # type: ignore[misc, name-defined]
+    class SharedArray(np.ndarray):  # type: ignore[misc, name-defined]
         """Bytes of shared memory; or, without a source, bytes in place of such."""
 
         source: Source | None = None
@@ -85,10 +85,10 @@ def _make() -> Any:
             if self.ended is not None:
                 self.ended()
 
-    return Lease
+    return SharedArray
 
 
-def place_of(blocks: Sequence[Buffer]) -> Place | None:
+def place_of(blocks: Sequence[Buffer]) -> Location | None:
     """Return the place where the bytes of these blocks lie one after the other in memory that can
     be shown to others; None if they do not.
 
@@ -98,13 +98,13 @@ def place_of(blocks: Sequence[Buffer]) -> Place | None:
     block = blocks[-1] if blocks else b""
     if type(block) is not memoryview or len(block) < LARGE:
         return None
-    lease = _lease_of(block.obj)
-    if lease is None or lease.source is None:
+    shared = _shared_array_of(block.obj)
+    if shared is None or shared.source is None:
         return None
-    source: Source = lease.source
+    source: Source = shared.source
     start = _address(block) - source.address
-    first: int = lease.offset
-    room: WritableBlock | None = lease.room
+    first: int = shared.offset
+    room: WritableBlock | None = shared.room
     head = blocks[0] if len(blocks) == 2 else b"".join(blocks[:-1])
     begin = start - len(head)
     if begin < first or len(head) > HEADROOM:
@@ -114,10 +114,10 @@ def place_of(blocks: Sequence[Buffer]) -> Place | None:
     elif room is not None and start == first + HEADROOM:
         if not room.begin(bytes(head)):
             return None
-    elif memoryview(lease)[begin - first : start - first] != head:
+    elif memoryview(shared)[begin - first : start - first] != head:
         return None
     if room is None:
-        return source, begin, lease
+        return source, begin, shared
     _forbid(block.obj)
     return source, begin, room
 
@@ -131,14 +131,14 @@ def freeze(value: object, blocks: Sequence[Buffer]) -> None:
         _forbid(block.obj)
 
 
-def _lease_of(one: Any) -> Any:
-    """Return the lease that something is a view of, by way of the arrays between; None if it is a
-    view of something else."""
-    lease = _MADE.get("class")
-    if lease is None:
+def _shared_array_of(one: Any) -> Any:
+    """Return the shared array that something is a view of, by way of the arrays between; None if it
+    is a view of something else."""
+    shared = _MADE.get("class")
+    if shared is None:
         return None  # there is none yet, and a writer need not wait for the import of numpy
-    array = lease.__base__
-    while type(one) is not lease:
+    array = shared.__base__
+    while type(one) is not shared:
         if isinstance(one, array):
             one = one.base
         elif type(one) is memoryview:
@@ -149,12 +149,12 @@ def _lease_of(one: Any) -> Any:
 
 
 def _forbid(one: Any) -> None:
-    """Let what is a view of a lease, and all arrays between, not be written to any more."""
-    lease = _lease_of(one)
-    if lease is None or not lease.flags.writeable:
+    """Let what is a view of a shared array, and all arrays between, not be written to any more."""
+    shared = _shared_array_of(one)
+    if shared is None or not shared.flags.writeable:
         return
-    lease.setflags(write=False)
-    while one is not lease:
+    shared.setflags(write=False)
+    while one is not shared:
         if type(one) is memoryview:
             one = one.obj
         else:
@@ -171,7 +171,7 @@ def address_of(memory: mmap.mmap) -> int:
 
 def _address(block: memoryview) -> int:
     whole: Any = block.obj
-    if not (isinstance(whole, lease_type().__base__) and whole.nbytes == len(block)):
+    if not (isinstance(whole, shared_array_type().__base__) and whole.nbytes == len(block)):
         numpy = imported("numpy")
         whole = numpy.frombuffer(block, numpy.uint8)
     address: int = whole.__array_interface__["data"][0]
