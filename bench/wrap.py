@@ -5,7 +5,8 @@ The reader is a program of its own; the contenders take turns, so that a busy ma
 to each. A ratio compares medians of the same round, and the middle one of these counts. A decorated
 method stamps what it sends, so a bare write with a stamp is beside it, too. `paced` waits 2 ms
 before each, as a control loop does; the others follow each other. Questions are of one number, to
-an `RpcServer`, to a method that `wrap` serves, and to one of a program for Wrapyfi.
+an `RpcServer`, to a method that `wrap` serves, and to one of a program for Wrapyfi. What receiving
+takes is counted in processor time, since the sender decides when something comes.
 
     python bench/wrap.py [--rounds 30]
 """
@@ -32,6 +33,7 @@ from yarpy.kits.wrap.value.tree import from_text, to_text
 
 SMALL = {"joint": 3, "angle": 45.0}
 PICTURE = np.random.default_rng(1).integers(0, 255, (480, 640, 3), "u1")
+VALUES = {"small": SMALL, "picture": PICTURE}
 
 READER = """
 import sys, yarpy
@@ -78,6 +80,22 @@ with yarpy.RpcServer("/native", lambda message: message.value[0] + 1), wrap.serv
     print("ready", flush=True)
     sys.stdin.read()
     drop_in.close()
+"""
+
+
+WRITER = f"""
+import sys, time
+sys.path.insert(0, {str(Path(__file__).resolve().parent)!r})
+from wrap import VALUES, Arm, wrap, yarpy
+arm = Arm(VALUES[sys.argv[1]])
+method = getattr(arm, sys.argv[1])
+with yarpy.BufferedPort("/bare", strict=True) as bare, wrap.publish(method):
+    print("ready", flush=True)
+    for line in sys.stdin:
+        who, count = line.split()
+        for _ in range(int(count)):
+            time.sleep(0.001)
+            method() if who == "listen" else bare.write(arm.value)
 """
 
 
@@ -185,9 +203,45 @@ def asking(rounds: int) -> dict[str, float]:
     return found
 
 
+def receiving(name: str, rounds: int) -> dict[str, float]:
+    """What another program writes, every millisecond, to a port and to a method that listens."""
+    method = getattr(Arm(None), name)
+    reads: dict[str, Callable[[Any], object]] = {
+        "small": lambda message: message.as_(dict),
+        "picture": lambda message: message.value.array.copy(),  # which may be changed then
+    }
+    pipe, read, count = subprocess.PIPE, reads[name], 100
+    with (
+        yarpy.NameServer() as server,
+        subprocess.Popen(
+            [sys.executable, "-c", WRITER, name], env=server.environment, stdin=pipe, stdout=pipe
+        ) as process,
+    ):
+        assert process.stdin is not None and process.stdout is not None
+        process.stdout.readline()
+        with yarpy.BufferedPort("", strict=True) as bare, wrap.listen(method) as handle:
+            bare.listen_to("/bare")
+            while not handle.stats[0]["inputs"]:
+                time.sleep(0.01)
+            acts = {"read": lambda: read(bare.read()), "listen": method}
+            times: dict[str, list[float]] = {who: [] for who in acts}
+            for _ in range(rounds):
+                for who, act in acts.items():
+                    process.stdin.write(f"{who} {count}\n".encode())
+                    process.stdin.flush()
+                    begun = time.process_time()
+                    for _ in range(count):
+                        act()
+                    times[who].append((time.process_time() - begun) / count * 1e6)
+        process.stdin.close()
+    pairs = [one / base for one, base in zip(times["listen"], times["read"], strict=True)]
+    found = {f"{who} {name}, processor": statistics.median(one) for who, one in times.items()}
+    return {**found, f"listen {name} / read {name}, processor": statistics.median(pairs)}
+
+
 def measure(rounds: int) -> dict[str, float]:
     """Every number: microseconds, and ratios."""
-    found = asking(rounds)
+    found = asking(rounds) | receiving("small", rounds) | receiving("picture", rounds)
     arm = Arm(SMALL)
     calls = {"call plain": arm.plain, "call decorated, no mode": arm.small}
     found |= medians(calls, 20_000, rounds)

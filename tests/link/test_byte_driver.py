@@ -12,9 +12,10 @@ from support.wait import HANG
 
 from yarpy.errors import Timeout
 from yarpy.link.begin.greeting import driver_of
-from yarpy.link.byte_driver import ByteDriver
+from yarpy.link.byte_driver import FIRST_PENALTY, LAST_PENALTY, ByteDriver
 from yarpy.transports.socket_transport import SocketTransport
 from yarpy.wire.aside_stream import AsideStream
+from yarpy.wire.stream import ByteStream
 
 
 def test_flush_by_a_deadline_leaves_the_rest_for_the_next() -> None:
@@ -57,3 +58,22 @@ def test_what_goes_another_way_is_counted_when_its_reference_leaves() -> None:
     assert not driver.push()
     assert driver.send()
     assert (driver.bytes_out, driver.aside, stream.aside) == (1010, 1000, 0)
+
+
+def test_who_is_asked_a_hundred_times_in_a_row_is_awake_also_after_long_silence(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    driver = ByteDriver(ScriptTransport(), ByteStream())
+    there = False
+    monkeypatch.setattr(driver, "_try", lambda buffer: there)
+    buffer = driver.stream.get_buffer()
+    for _ in range(6):  # nobody asks
+        assert not driver._look(buffer)
+    assert driver._skip == LAST_PENALTY
+    there = True
+    assert all(driver._look(buffer) for _ in range(100))
+    there = False
+    assert not driver._look(buffer)
+    assert driver._skip == FIRST_PENALTY
+    assert not driver._look(buffer)
+    assert driver._skip == 2 * FIRST_PENALTY  # in vain again, and nothing has paid for it

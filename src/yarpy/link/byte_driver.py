@@ -2,7 +2,8 @@
 
 Rules: one call into the system where one is enough. Waking a sleeping thread takes some 30 us: when
 the last wait was about that short, the driver polls for the next bytes for a while before it
-sleeps; each time in vain makes it poll less often.
+sleeps. Polling in vain makes it poll less often, unless it had paid for that before: questions that
+come a hundred at a time are answered awake, whatever happened between them.
 
 What a call into the system returns is taken from a `map` by a `for` into an attribute: that is one
 step for Python, which looks for signals only behind calls. (Compiled, other ways of unpacking hide
@@ -33,6 +34,7 @@ SOON: Final = 200e-6
 LOOKING: Final = 120e-6
 FIRST_PENALTY: Final = 32
 LAST_PENALTY: Final = 512
+PAYING: Final = 8  # polls that found bytes save what one in vain costs
 # Of so many pieces, with so many bytes together, one is made before they are sent.
 FEW: Final = 8
 LITTLE: Final = 1 << 11
@@ -63,6 +65,7 @@ class ByteDriver(Driver):
         self._looks = False  # poll for the next bytes instead of sleeping
         self._skip = 0  # waits to pass before polling is tried again
         self._penalty = FIRST_PENALTY
+        self._paid = 0  # polls that found bytes since the last one in vain
         self._aimed: memoryview | None = None  # a buffer, and what takes bytes into it
         self._tries: Iterator[int] = iter(())
         self._came = NONE  # bytes that the system has put into the stream's buffer; 0: the end
@@ -276,12 +279,12 @@ class ByteDriver(Driver):
         while True:
             for _ in range(8):
                 if self._try(buffer):
-                    if self._penalty > FIRST_PENALTY:
-                        self._penalty -= 1
+                    self._paid += 1
                     return True
             if time.perf_counter() > until:
                 break
         self._looks = False
-        self._skip = self._penalty
-        self._penalty = min(2 * self._penalty, LAST_PENALTY)
+        self._skip = FIRST_PENALTY if self._paid >= PAYING else self._penalty
+        self._penalty = min(2 * self._skip, LAST_PENALTY)
+        self._paid = 0
         return False

@@ -18,7 +18,7 @@ from support.wait import HANG, wait_until
 import yarpy
 from yarpy.contact import Contact
 from yarpy.errors import NoNameServer
-from yarpy.port.connect import choosing
+from yarpy.port.connect import choosing, connecting
 from yarpy.port.connect.choosing import choose, instead
 from yarpy.route import parse_carrier
 from yarpy.transports.shared.arena import arena_of
@@ -151,6 +151,39 @@ def test_pictures_to_two_programs(server: yarpy.NameServer) -> None:
         assert (stats.messages, stats.drops) == (20, 0)
         assert stats.bytes > 20 * 160_000  # as over any other carrier
         wait_until(lambda: arena_of("/out").used <= 1)  # what they looked at last
+
+
+WRITER = """
+import sys, yarpy
+with yarpy.Port("/writer") as port:
+    print("open", flush=True)
+    while sys.stdin.readline():
+        port.write([1])
+"""
+
+
+@pytest.mark.parametrize("lost", [False, True])
+def test_listening_without_a_name(
+    lost: bool, server: yarpy.NameServer, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Only the listener knows what it speaks. Where memory cannot be had, it asks for tcp."""
+    asked: list[str] = []
+
+    def ask(contact: Contact, command: list[str], **options: object) -> object:
+        asked.append(command[1])
+        return [1, "no"] if lost and "memory" in command[1] else probe_ask(contact, command)
+
+    probe_ask = connecting.probe.ask
+    monkeypatch.setattr(connecting.probe, "ask", ask)
+    with Process([sys.executable, "-c", WRITER], env=os.environ) as writer:
+        writer.wait_line("^open$")
+        with yarpy.BufferedPort("", strict=True) as port:
+            port.listen_to("/writer")
+            assert port.wait_for_inputs(timeout=HANG)
+            assert port.inputs[0].carrier == ("tcp" if lost else "memory")
+            assert len(asked) == 1 + lost
+            writer.write_line()
+            assert port.read(HANG).value == [1]
 
 
 def test_persistent_connections(server: yarpy.NameServer) -> None:

@@ -197,8 +197,6 @@ class Inlets:
 
     def listen(self, timeout: float | None) -> list[Any]:
         """One value from each topic. Raises Timeout, unless `missing` says otherwise."""
-        if len(self._inlets) == 1:
-            return [self._one(self._inlets[0], timeout)]
         clock = _Clock(timeout)
         if not self._together:
             return [self._one(inlet, clock.left) for inlet in self._inlets]
@@ -228,6 +226,13 @@ class Inlets:
         except Timeout:
             return self._missed()
         return [one.value for one in found]
+
+    def listen_to_one(self, timeout: float | None) -> Any:
+        """As `listen` where there is one topic: its value."""
+        try:
+            return self._inlets[0].listen(timeout).value
+        except Timeout:
+            return self._instead(self._inlets[0])
 
     def _one(self, inlet: Inlet, timeout: float | None) -> Any:
         try:

@@ -25,7 +25,7 @@ class Follower:
     """Keeps `port` connected to `topic` over `carrier`, until `close`."""
 
     def __init__(
-        self, port: MessagePort, topic: str, carrier: str = "tcp", qos: Qos | None = None
+        self, port: MessagePort, topic: str, carrier: str = "", qos: Qos | None = None
     ) -> None:
         self._port = port
         self._topic = topic

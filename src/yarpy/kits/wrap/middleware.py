@@ -138,6 +138,30 @@ class Received:
         return Stamp(self.count & 0x7FFFFFFF, self.time)
 
 
+class Heard(Received):
+    """A value that came with an envelope, whose count and time are read when somebody asks: that
+    takes as long as reading a small value."""
+
+    __slots__ = ("envelope",)
+
+    def __init__(self, value: Any, envelope: str, source: str, middleware: str) -> None:
+        self.value = value
+        self.envelope = envelope
+        self.source = source
+        self.middleware = middleware
+
+    def __getattr__(self, name: str) -> Any:
+        """Read the envelope: `count` and `time` are not set yet."""
+        if name not in ("count", "time"):
+            raise AttributeError(f"a value that came has no {name}")
+        try:
+            stamp = Stamp.from_text(self.envelope) if self.envelope else None
+        except DecodeError:
+            stamp = None
+        self.count, self.time = (stamp.count, stamp.time) if stamp is not None else (None, None)
+        return self.count if name == "count" else self.time
+
+
 @dataclass(slots=True)
 class Failure:
     """The answer of a server whose method raised an exception."""

@@ -181,10 +181,14 @@ class Listen(Mode):
         super().__init__(method, instance, outputs)
         self.inlets = Inlets(method, _results(method, outputs))
         self._listen = self.inlets.listen
+        self._listen_to_one = self.inlets.listen_to_one
         self._listen_async = self.inlets.listen_async
 
     def run(self, func: Function, args: tuple[Any, ...], kwargs: dict[str, Any]) -> Any:
-        return self.listened(self._listen(self.timeout(kwargs)))
+        timeout = self.timeout(kwargs) if kwargs else self.method.timeout
+        if self._single:
+            return self._listen_to_one(timeout)
+        return self.listened(self._listen(timeout))
 
     async def run_async(self, func: Function, args: tuple[Any, ...], kwargs: dict[str, Any]) -> Any:
         return self.listened(await self._listen_async(self.timeout(kwargs)))
@@ -355,8 +359,10 @@ class Serve(Mode):
                 raise PortClosed("the object whose method this is does not exist any more")
             if kwargs or tuple(map(type, args)) != self._exact:
                 args, kwargs = method.load(instance, args, kwargs)
-            first = () if instance is None else (instance,)
-            value = method.func(*first, *args, **kwargs)
+            if instance is None:
+                value = method.func(*args, **kwargs)
+            else:
+                value = method.func(instance, *args, **kwargs)
             if method.kind == "coroutine":
                 value = self._waited(value)
             shape = method.result

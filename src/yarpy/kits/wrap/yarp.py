@@ -16,9 +16,9 @@ from yarpy.errors import DecodeError, LinkClosed, UnknownName, YarpError
 from yarpy.kits.wrap.follower import Follower
 from yarpy.kits.wrap.middleware import Answer, Binding, Failure, Item, Received, question_of
 from yarpy.kits.wrap.port_end import PortEnd
-from yarpy.kits.wrap.value.shape import Shape
+from yarpy.kits.wrap.value.native import SURE
+from yarpy.kits.wrap.value.shape import ANY, Shape
 from yarpy.kits.wrap.value.spelling import (
-    FORMS,
     answered,
     failure,
     failure_of,
@@ -42,7 +42,7 @@ class Yarp:
     """The middleware `yarp`: names by the name server, connections between ports."""
 
     name = "yarp"
-    carrier = "tcp"
+    carrier = ""  # of listeners: as between any two ports, the fastest that both have
 
     def check(self, binding: Binding) -> None:
         binding.refuse(
@@ -111,12 +111,11 @@ class PortListener(PortEnd):
     ) -> None:
         super().__init__(port, binding)
         self._shape = shape
+        self._middleware = binding.middleware
         self._follower = follower
 
     def listen(self, timeout: float | None) -> Received:
-        found = received(self.read(timeout), self._shape)
-        found.middleware = self.binding.middleware
-        return found
+        return received(self.read(timeout), self._shape, self._middleware)
 
     def close(self) -> None:
         if self._follower is not None:
@@ -130,7 +129,10 @@ class PortServer:
     def __init__(self, name: str, answer: Answer, binding: Binding) -> None:
         self._name = name
         self._answer = answer
-        self._form = FORMS[binding.encoding]
+        shape = ANY if binding.signature is None else binding.signature.result
+        self._form = form_of(binding.encoding, shape)
+        # What comes back whatever its value is spelled as it is.
+        self._sure = shape.exact if binding.encoding == "native" and shape.exact in SURE else None
 
     def __call__(self, message: Message) -> Any:
         value = message.value
@@ -140,7 +142,10 @@ class PortServer:
             found = self._answer(args, {})
         else:
             found = self._answer(*self._arguments(message))
-        return failure(found) if isinstance(found, Failure) else self._form(found)
+        if isinstance(found, Failure):
+            return failure(found)
+        plain = found.plain
+        return plain if type(plain) is self._sure else self._form(found)
 
     def _arguments(self, message: Message) -> tuple[list[Any], dict[str, Any]]:
         """Those of a frame, or of a text of Wrapyfi."""

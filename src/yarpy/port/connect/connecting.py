@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import time
 from dataclasses import replace
-from typing import Final
+from typing import Any, Final
 
 from yarpy import scope
 from yarpy.carriers.base import Carrier
@@ -144,8 +144,15 @@ def subscribe(hub: Hub, source: str, carrier: str) -> None:
         connect(hub, source, carrier)
         return
     identity.confirm(contact, identity.properties_of(hub.service()), hub.key)
-    target = hub.name if hub.registration.registered else f"/{hub.contact.address}"
-    reply = probe.ask(contact, ["add", joined(target, carrier)], secret_=hub.key)
+    own = hub.registration.registered
+    target = hub.name if own else f"/{hub.contact.address}"
+    # Nobody can find out what a port without a name speaks: it chooses itself.
+    chosen = None if carrier or own else choose(contact, hub.service(), own=True)
+    reply: list[Any] = []
+    if chosen is not None and instead(chosen) is not None:
+        reply = probe.ask(contact, ["add", joined(target, chosen.whole)], secret_=hub.key)
+    if not reply or reply[0] != 0:
+        reply = probe.ask(contact, ["add", joined(target, carrier)], secret_=hub.key)
     if not reply or reply[0] != 0:
         line = plain_text(reply[1]).strip() if len(reply) > 1 else ""
         raise refusal.error(line, f'"{source}" -> "{hub.name}"')

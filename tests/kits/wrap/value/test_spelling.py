@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 from typing import Annotated, Any
 
 import numpy as np
@@ -29,7 +30,7 @@ def sent(value: object, hint: Any, encoding: str) -> Message:
     shape = shape_of(hint)
     item = Item(shape.dump(value), shape, 3, 1.5, "/eyes")
     data = b"".join(Packet(form_of(encoding, shape)(item)).blocks)
-    assert data == b"".join(Packet(FORMS[encoding](item)).blocks)  # of servers, whose shapes vary
+    assert data == b"".join(Packet(FORMS[encoding](item)).blocks)  # of a shape that says nothing
     return Message(DATA, data, "4 2.5")
 
 
@@ -97,9 +98,24 @@ def test_what_ports_do_not_bring_back_is_framed(value: Any, hint: Any) -> None:
     np.testing.assert_equal(received(message, shape_of(hint)).value, value)
 
 
+@pytest.mark.parametrize("size", [2, 30_000])
+def test_what_came_belongs_to_who_listens(size: int) -> None:
+    """Also where it lies in memory of the sender's, which is read-only."""
+    hints = (np.ndarray, Annotated[np.ndarray, Image("mono")])
+    for hint, encoding, kind in itertools.product(hints, ("native", "frame"), (memoryview, bytes)):
+        message = sent(np.zeros((2, size), "u1"), hint, encoding)
+        message.payload = kind(bytes(message.payload))
+        found = received(message, shape_of(hint)).value
+        found += 1
+        assert found.all()
+
+
 def test_stamps_of_envelopes_and_of_frames() -> None:
     native = received(sent(3, int, "native"), shape_of(int))
     assert (native.count, native.time) == (4, 2.5)
+    for envelope in ("", "no stamp"):
+        other = received(Message(DATA, b"".join(Packet(7).blocks), envelope), shape_of(int))
+        assert (other.value, other.time, other.count, other.stamp) == (7, None, None, None)
     framed = received(sent(3, int, "frame"), shape_of(int))
     assert (framed.count, framed.time, framed.source) == (3, 1.5, "/eyes")
 

@@ -40,6 +40,26 @@ def test_arrays_in_a_text() -> None:
     assert np.array_equal(from_text(text)["a"], np.arange(2))
 
 
+def test_an_array_alone_passes_json_by(monkeypatch: pytest.MonkeyPatch) -> None:
+    array = np.arange(6, dtype="i2").reshape(2, 3)
+    text = json.dumps(TreeEncoder(None).encode(array))
+
+    def never(*arguments: object, **options: object) -> None:
+        raise AssertionError("JSON looks at each character")
+
+    with monkeypatch.context() as patch:
+        patch.setattr(json, "dumps", never)
+        patch.setattr(json, "loads", never)
+        assert to_text(array) == text
+        for came in (text, text.encode()):
+            assert np.array_equal(from_text(came), array)
+    escaped = text.replace("k05V", "\\u006b05V")  # as others may write it
+    assert np.array_equal(from_text(escaped), array)
+    for wrong in (text[:-5] + '", "x"]}', text.replace("k05V", "k\u00e9")):
+        with pytest.raises(yarpy.DecodeError):
+            from_text(wrong)
+
+
 def test_nested_tuples_are_marked_on_every_level() -> None:
     assert from_text(to_text((1, (2, 3)))) == (1, (2, 3))
 

@@ -17,6 +17,7 @@ import numpy as np
 import yarpy
 from wrapyfi.utils.image_encoders import JpegEncoder, decode_jpg
 from wrapyfi.utils.serialization_encoders import JsonDecodeHook, JsonEncoder
+from yarpy.kits.wrap.value.tree import array_of_text
 
 
 class Native:
@@ -39,7 +40,15 @@ class Native:
     @cached_property
     def _decode(self) -> Callable[[str], Any]:
         hook = JsonDecodeHook(**self._plugins).object_hook
-        return json.JSONDecoder(object_hook=hook, **self._decoder).decode
+        decode = json.JSONDecoder(object_hook=hook, **self._decoder).decode
+        if self._decoder:
+            return decode
+
+        def decoded(text: str) -> Any:
+            alone = array_of_text(text)
+            return decode(text) if alone is None else hook(alone)
+
+        return decoded
 
     def of_text(self, text: str | bytes) -> Any:
         """The value of a text. Raises ValueError."""

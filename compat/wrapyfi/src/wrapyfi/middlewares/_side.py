@@ -123,7 +123,7 @@ class _Sending(_Side, Publisher):
         self,
         name: str,
         out_topic: str,
-        carrier: str = "tcp",
+        carrier: str = "",
         should_wait: bool = True,
         **options: Any,
     ) -> None:
@@ -159,7 +159,7 @@ class _Taking(_Side, Listener):
         self,
         name: str,
         in_topic: str,
-        carrier: str = "tcp",
+        carrier: str = "",
         should_wait: bool = True,
         **options: Any,
     ) -> None:
@@ -209,7 +209,7 @@ class _Serving(_Side, Server):
         self,
         name: str,
         out_topic: str,
-        carrier: str = "tcp",
+        carrier: str = "",
         out_topic_connect: str | None = None,
         **options: Any,
     ) -> None:
@@ -259,7 +259,7 @@ class _Serving(_Side, Server):
 
 
 class _Asking(_Side, Client):
-    def __init__(self, name: str, in_topic: str, carrier: str = "tcp", **options: Any) -> None:
+    def __init__(self, name: str, in_topic: str, carrier: str = "", **options: Any) -> None:
         super().__init__(name, in_topic, carrier, **options)
         self.options = options
         self.form = self.medium.answers[self.kind](options)

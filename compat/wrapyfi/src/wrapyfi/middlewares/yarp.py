@@ -75,7 +75,9 @@ class _PictureForm(Picture):
             return self.of_file(from_npy(b64decode(came.as_(str))).tobytes())
         # Wrapyfi says rgb and sends what it has; only another kind of picture is converted.
         image = came.as_(yarpy.Image).converted(_CODES[self.rgb, self.fp])
-        return self.checked(image.array).copy()
+        array = self.checked(image.array)
+        # It belongs to the listener; bytes that came by a socket are nobody else's already.
+        return array if array.flags.writeable else array.copy()
 
 
 class _SoundForm(Sound):
@@ -146,7 +148,7 @@ class _In:
         self._port = yarpy.BufferedPort(
             _own(side.in_topic), strict=side.kind == "AudioChunk", timeout=OPENING
         )
-        self._follower = Follower(self._port, side.in_topic, side.carrier or "tcp")
+        self._follower = Follower(self._port, side.in_topic, side.carrier)
 
     def wait(self, seconds: float) -> bool:
         return self._follower.wait(seconds)

@@ -11,7 +11,7 @@ from typing import Any
 from wrapyfi.utils._shipped import for_tag, for_type
 from wrapyfi.utils._tensors import gathered, planted
 from wrapyfi.utils.core_utils import PluginRegistrar
-from yarpy.kits.wrap.value.tree import OWN, PLAIN, TAG, TreeEncoder, untag
+from yarpy.kits.wrap.value.tree import OWN, PLAIN, TAG, TreeEncoder, text_of_array, untag
 
 
 class JsonEncoder(json.JSONEncoder):
@@ -22,14 +22,20 @@ class JsonEncoder(json.JSONEncoder):
         known += ("separators", "default")
         options = {name: kwargs.pop(name) for name in [*kwargs] if name not in known}
         super().__init__(**kwargs)
+        self._as_usual = not kwargs
         self._usual, self._plugged = _LibraryEncoder(options), _PluginEncoder(options)
 
     def encode(self, o: Any) -> str:
-        return "".join(self.iterencode(o, True))
+        tree = self._tree(o)
+        alone = text_of_array(tree) if self._as_usual else None
+        return alone or "".join(super().iterencode(tree, True))
 
     def iterencode(self, o: Any, _one_shot: bool = False) -> Any:
+        return super().iterencode(self._tree(o), _one_shot)
+
+    def _tree(self, value: Any) -> Any:
         encoder = self._plugged if PluginRegistrar.encoder_registry else self._usual
-        return super().iterencode(encoder.encode(o), _one_shot)
+        return encoder.encode(value)
 
 
 class _LibraryEncoder(TreeEncoder):

@@ -43,6 +43,10 @@ class Array(Shape):
     def __init__(self, module: str = "numpy") -> None:
         self.module = module
         self.name = "an array"
+        if module == "numpy":
+            import numpy as np
+
+            self.exact = np.ndarray
 
     def dump(self, value: Any) -> Any:
         array = value if type(value).__module__ == "numpy" else array_of(value)
@@ -62,7 +66,7 @@ class Array(Shape):
         if array.dtype.hasobject:
             raise self._wrong(plain)
         if self.module == "numpy":
-            return array
+            return _own(array)
         return _moved(array, self.module)
 
     def native(self, plain: Any) -> Any:
@@ -74,7 +78,18 @@ class Array(Shape):
     def read(self, message: Message) -> Any:
         import numpy as np
 
-        return message.as_(np.ndarray)
+        value = message.value
+        kind = type(value)
+        if kind is YarpImage:
+            array = value.array
+        else:
+            array = value if kind is np.ndarray else message.as_(np.ndarray)
+        return _own(array)
+
+
+def _own(array: Any) -> Any:
+    """Return an array that its owner may change: a small one came in bytes that nobody may."""
+    return array if array.flags.writeable else array.copy()
 
 
 def _moved(array: Any, module: str) -> Any:
@@ -111,11 +126,11 @@ class Picture(Shape):
 
         if isinstance(plain, YarpImage):
             try:
-                return plain.converted(self.image.code).array
+                return _own(plain.converted(self.image.code).array)
             except ValueError as error:
                 raise DecodeError(f"expected {self.name}: {error}") from error
         if isinstance(plain, np.ndarray) and plain.ndim in (2, 3):
-            return plain  # of a peer that says nothing of its pixels
+            return _own(plain)  # of a peer that says nothing of its pixels
         raise self._wrong(plain)
 
     def native(self, plain: Any) -> Any:

@@ -13,15 +13,15 @@ from yarpy.data.bottle import Bottle
 
 NOT_NATIVE: Final = object()
 INT64: Final = 1 << 63
-_SURE: Final = frozenset((str, float, bool, bytes))  # whatever their value, they come back
-_PLAIN: Final = _SURE | {int}
+SURE: Final = frozenset((str, float, bool, bytes))  # whatever their value, they come back
+_PLAIN: Final = SURE | {int}
 _TEXT: Final = frozenset((str,))
 
 
 def survives(value: Any) -> bool:
     """Return whether an element of a list comes back from YARP equal to what it was."""
     kind = type(value)
-    if kind in _SURE:
+    if kind in SURE:
         return True
     if kind is int:
         return bool(-INT64 <= value < INT64)
@@ -39,7 +39,7 @@ def _survive(values: Iterable[Any]) -> bool:
         if kind is int:
             if not -INT64 <= value < INT64:
                 return False
-        elif kind not in _SURE and not survives(value):
+        elif kind not in SURE and not survives(value):
             return False
     return True
 

@@ -9,6 +9,7 @@ bytes.
 from __future__ import annotations
 
 from collections.abc import Callable
+from struct import Struct
 from typing import Any, Final
 
 from yarpy.data.bottle import Bottle
@@ -18,10 +19,10 @@ from yarpy.data.python.described import is_needed
 from yarpy.data.sig.jpeg import encode as to_jpeg
 from yarpy.data.value import Vocab
 from yarpy.errors import DecodeError
-from yarpy.kits.wrap.middleware import Failure, Item, Received
+from yarpy.kits.wrap.middleware import Failure, Heard, Item, Received
 from yarpy.kits.wrap.value import frame
 from yarpy.kits.wrap.value.array import Picture
-from yarpy.kits.wrap.value.native import NOT_NATIVE, survives
+from yarpy.kits.wrap.value.native import NOT_NATIVE, SURE, survives
 from yarpy.kits.wrap.value.shape import Scalar, Shape
 from yarpy.kits.wrap.value.tree import Jpeg, from_text, to_text
 from yarpy.wire.message import Message
@@ -144,16 +145,26 @@ def frame_of(message: Message) -> frame.Frame | None:
     return frame.from_parts([value[1].encode("utf-8", "surrogateescape"), *blocks])
 
 
-def received(message: Message, shape: Shape) -> Received:
+def received(message: Message, shape: Shape, middleware: str = "") -> Received:
     """A message as the value that `shape` says. Raises DecodeError."""
+    data = message.payload
+    if type(data) is memoryview and data.readonly:
+        # It lies in memory of its sender's: what a method returns belongs to the caller, who may
+        # draw into a picture, and keep a thousand of them.
+        data = message.payload = bytearray(data)
+    if message.spelling == "binary" and len(data) >= _HEAD.size:
+        # As nearly always neither a frame nor a text of Wrapyfi: one look at the first bytes.
+        code, count, first, second = _HEAD.unpack_from(data)
+        if first != len(_WORD) and second != len(_WORD) and (code != _TEXTS or count != 1):
+            value = shape.read(message)
+            if type(value) is not shape.exact:
+                value = shape.load(value)
+            return Heard(value, message.envelope, message.source, middleware)
     found = frame_of(message)
     if found is not None:
-        return Received(
-            shape.load(found.value), found.count, found.time, found.source or message.source
-        )
-    stamp = message.stamp
-    count, time = (stamp.count, stamp.time) if stamp is not None else (None, None)
-    return Received(_native(message, shape), count, time, message.source)
+        value, source = shape.load(found.value), found.source or message.source
+        return Received(value, found.count, found.time, source, middleware)
+    return Heard(_native(message, shape), message.envelope, message.source, middleware)
 
 
 def answered(message: Message, shape: Shape) -> Any:
@@ -185,7 +196,9 @@ def text_of(message: Message) -> str | None:
     return found
 
 
-_ONE_TEXT: Final = (256 + 4).to_bytes(4, "little") + (1).to_bytes(4, "little")
+_TEXTS: Final = 256 + 4  # how a list of texts begins
+_ONE_TEXT: Final = _TEXTS.to_bytes(4, "little") + (1).to_bytes(4, "little")
+_HEAD: Final = Struct("<4i")
 
 
 # ------------------------------------------------------------------------------------ questions
@@ -194,7 +207,7 @@ _ONE_TEXT: Final = (256 + 4).to_bytes(4, "little") + (1).to_bytes(4, "little")
 def question(name: str, args: list[Any], kwargs: dict[str, Any]) -> list[Any]:
     """The question of a client: `look 1.0 fast`, as any program may ask; a frame of the arguments
     if YARP has no types for them."""
-    if not kwargs and all(map(survives, args)):
+    if not kwargs and (SURE.issuperset(map(type, args)) or all(map(survives, args))):
         return [name, *args]
     return bottle(frame.Frame([args, kwargs]))
 
