@@ -40,7 +40,8 @@ def test_files_of_the_page(page: NamePage) -> None:
     assert {*re.findall(r'"/\*/([\w.]+)"', f"{html.body}{script.body}")} <= {*KINDS}
 
 
-def test_ports_as_json(page: NamePage) -> None:
+def test_ports_as_json(page: NamePage, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(page._survey, "want", lambda: None)  # nobody was asked yet
     status, body = shown(page, "/ports") or (0, "")
     page.close()
     told = json.loads(body)
