@@ -8,6 +8,7 @@ import threading
 import time
 from collections.abc import Iterator
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -21,6 +22,7 @@ from yarpy.peers.ros2.key import Key
 from yarpy.peers.ros2.kind import key_of
 from yarpy.peers.ros2.zenoh.attachment import attachment
 from yarpy.peers.ros2.zenoh.participant import Participant, take_part
+from yarpy.peers.ros2.zenoh.subscriber import Subscriber
 from yarpy.peers.zenoh.transport import share
 
 zenoh = pytest.importorskip("zenoh", reason='Zenoh: pip install "yarpy[zenoh]"')
@@ -250,6 +252,27 @@ def test_lost_messages_are_counted(part: Participant) -> None:
         for _ in range(3):
             reader.read(timeout=HANG)
         assert reader.stats.inputs[0].drops == 4
+
+
+def test_what_comes_while_a_subscriber_joins_is_read(
+    part: Participant, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    join = Subscriber.join
+    heard: list[object] = []
+
+    with yarpy.Port("/out") as out, yarpy.BufferedPort("/in", strict=True) as reader:
+
+        def slowly(endpoint: Subscriber, key: Key, kind: Any) -> None:
+            join(endpoint, key, kind)
+            body = b"".join(kind(data="early").to_ros())
+            with share() as shared:
+                shared.session.put(str(key), body, attachment=attachment(1, 1, bytes(16)))
+            heard.append(reader.read(timeout=HANG).value)
+
+        monkeypatch.setattr(Subscriber, "join", slowly)
+        reader.listen_to("ros2://early")  # of no type, until somebody publishes
+        out.connect("ros2://early~std_msgs/msg/String")
+        wait_until(lambda: heard == ["early"])
 
 
 def test_questions_that_are_none(part: Participant) -> None:

@@ -44,6 +44,7 @@ class Endpoint(Inbox):
     role: ClassVar[str] = ""
     peers: ClassVar[tuple[str, ...]] = ()
     what: ClassVar[str] = kinds.MESSAGE
+    hears: ClassVar[bool] = False  # what comes may be read before `join` is over
 
     def __init__(
         self, participant: Participant, port: str, node: Node, name: str, qos: Qos | None
@@ -122,7 +123,14 @@ class Endpoint(Inbox):
             self.role, self.node, key, self.qos, self.extra(kind)
         )
         self._gid = gid(self._declared.text)
-        self.join(key, kind)
+        before = self.key, self.kind
+        if self.hears:
+            self.key, self.kind = key, kind
+        try:
+            self.join(key, kind)
+        except BaseException:
+            self.key, self.kind = before
+            raise
         self._declared.show()
         self._mismatch = self._mismatch or Mismatch(self.port_name, key, strict=True)
         self.key, self.kind = key, kind
@@ -295,6 +303,7 @@ class Server(Endpoint):
     role = SERVER
     peers = (CLIENT,)
     what = kinds.SERVICE
+    hears = True
 
     def join(self, key: Key, kind: Any) -> None:
         from zenoh.handlers import Callback

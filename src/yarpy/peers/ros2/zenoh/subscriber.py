@@ -49,6 +49,7 @@ class Subscriber(Endpoint):
 
     role = SUBSCRIBER
     peers = (PUBLISHER,)
+    hears = True
     waits: ClassVar[bool] = True  # a thread calls `receive` for each message
 
     def __init__(self, *arguments: Any) -> None:
