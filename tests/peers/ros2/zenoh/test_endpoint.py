@@ -20,6 +20,7 @@ import yarpy
 from yarpy.peers import ros2
 from yarpy.peers.ros2.key import Key
 from yarpy.peers.ros2.kind import key_of
+from yarpy.peers.ros2.zenoh import endpoint as module
 from yarpy.peers.ros2.zenoh.attachment import attachment
 from yarpy.peers.ros2.zenoh.participant import Participant, take_part
 from yarpy.peers.ros2.zenoh.subscriber import Subscriber
@@ -252,6 +253,18 @@ def test_lost_messages_are_counted(part: Participant) -> None:
         for _ in range(3):
             reader.read(timeout=HANG)
         assert reader.stats.inputs[0].drops == 4
+
+
+def test_the_first_message_says_the_type_and_is_heard(
+    part: Participant, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(module, "SOON", HANG)  # on a busy computer, too
+    with yarpy.Port("/out") as out, yarpy.BufferedPort("/in", strict=True) as reader:
+        reader.listen_to("ros2://first")
+        out.connect("ros2://first")
+        out.write("one")
+        out.write("two")
+        assert [reader.read(timeout=HANG).value for _ in range(2)] == ["one", "two"]
 
 
 def test_what_comes_while_a_subscriber_joins_is_read(

@@ -35,6 +35,7 @@ from yarpy.transports.inbox import Inbox
 
 log = logger("yarpy.ros2")
 
+SOON: Final = 0.2  # seconds in which a subscriber of no type learns ours
 MOST_QUESTIONS: Final = 100  # that wait for a server of ours
 
 
@@ -202,6 +203,13 @@ class Publisher(Endpoint):
     def __init__(self, *arguments: Any) -> None:
         super().__init__(*arguments)
         self._spare = Spare()
+
+    def settle(self, value: object) -> Any:
+        """As of an endpoint. Who subscribes without a type learns it from us, by now, and is waited
+        for: else nobody would hear the first message."""
+        if self.kind is None and super().settle(value) is not None:
+            self.participant.graph.wait(self.name, SUBSCRIBER, timeout=SOON)
+        return self.kind
 
     def join(self, key: Key, kind: Any) -> None:
         import zenoh
