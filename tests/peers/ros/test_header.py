@@ -9,6 +9,7 @@ from support.capture import load_capture
 
 from yarpy.errors import RemoteProtocolError
 from yarpy.limit import ROS_HEADER, ROS_HEADER_FIELDS
+from yarpy.link.begin.handshake import UNKNOWN_PROTOCOL
 from yarpy.peers.ros.header import begins_header, encode_header, parse_header, read_header
 from yarpy.wire.stream import ByteStream, run
 
@@ -67,6 +68,11 @@ def test_what_is_no_header_is_refused(data: bytes, problem: str) -> None:
 def test_an_announced_length_is_not_believed() -> None:
     with pytest.raises(RemoteProtocolError, match="the limit is"):
         parse(struct.pack("<I", ROS_HEADER + 1))
+
+
+def test_a_port_of_yarp_that_knows_no_ros_is_named() -> None:
+    with pytest.raises(RemoteProtocolError, match="take another carrier, such as tcp"):
+        parse(UNKNOWN_PROTOCOL)
 
 
 def test_beginnings() -> None:

@@ -20,6 +20,8 @@ from yarpy.wire.steps import Steps
 from yarpy.wire.stream import ByteStream
 
 LENGTH: Final = Struct("<I")
+#: so a port of C++ YARP begins to say that it does not know a protocol
+REFUSAL: Final = b"* Er"
 _TWO: Final = Struct("<II")
 _SMALLEST: Final = 2  # bytes of a field: a letter and "="
 
@@ -47,7 +49,13 @@ def encode_header(fields: Mapping[str, str]) -> bytes:
 
 def read_header(stream: ByteStream) -> Steps[Header]:
     """Read a header. Raises RemoteProtocolError."""
-    (size,) = LENGTH.unpack((yield from stream.read_exact(4)))
+    head = bytes((yield from stream.read_exact(4)))
+    if head == REFUSAL:
+        raise RemoteProtocolError(
+            "it is a port of YARP that does not speak this protocol of ROS, a plug-in of C++ YARP: "
+            "take another carrier, such as tcp"
+        )
+    (size,) = LENGTH.unpack(head)
     if size > ROS_HEADER:
         raise RemoteProtocolError(
             f"a header of {size} bytes is announced; the limit is {ROS_HEADER} bytes"
