@@ -127,6 +127,23 @@ def test_server_that_says_nothing() -> None:
         eye.blink(1, timeout=0.1)
 
 
+def test_nothing_comes_and_why() -> None:
+    """Who waits in vain reads what there is to mend: a topic with another name, no name server."""
+    eye = Eye()
+    with (
+        wrap.listen(eye.state),
+        pytest.raises(yarpy.Timeout, match=r'"/eye/state" within 0.05 s: .*"/eye/state"'),
+    ):
+        eye.state(timeout=0.05)
+    with yarpy.Port("/eye/state"), wrap.listen(eye.state) as handle:
+        wait_until(lambda: handle.stats[0]["inputs"])
+        with pytest.raises(yarpy.Timeout, match=r"within 0.05 s$"):
+            eye.state(timeout=0.05)
+    both = wrap.on("/eye/both", ("yarp", "websocket"))(lambda: 1)
+    with wrap.listen(both), pytest.raises(yarpy.Timeout, match='"/eye/both"'):
+        both(timeout=0.05)
+
+
 def test_what_comes_and_is_something_else() -> None:
     eye = Eye()
     with yarpy.Port("/eye/state") as port, wrap.listen(eye.state) as handle:

@@ -154,13 +154,23 @@ class Inlet:
 
     def listen(self, timeout: float | None) -> Received:
         queue = self._queue
-        found = self._listeners[0].listen(timeout) if queue is None else queue.take(timeout)
+        try:
+            found = self._listeners[0].listen(timeout) if queue is None else queue.take(timeout)
+        except Timeout as error:
+            raise self._late(error) from None
         self.last = found
         return found
 
     async def listen_async(self, timeout: float | None) -> Received:
-        self.last = await self.read_ahead().take_async(timeout)
+        try:
+            self.last = await self.read_ahead().take_async(timeout)
+        except Timeout as error:
+            raise self._late(error) from None
         return self.last
+
+    def _late(self, error: Timeout) -> Timeout:
+        """Return the error for a topic from which nothing came, which names it."""
+        return error if self._queue is None else Timeout(f'"{self.topic}": {error}')
 
     @property
     def stats(self) -> list[dict[str, Any]]:

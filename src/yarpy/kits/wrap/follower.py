@@ -33,7 +33,8 @@ class Follower:
         self._qos = qos
         self._event = threading.Event()
         self._connected = threading.Condition()
-        self._met = self._closed = self._told = False
+        self._met = self._closed = False
+        self.why = ""  # it is not connected: what the last look met
         port.on_connection(self._on_connection)
         if not self._look():
             self._event.set()
@@ -105,11 +106,11 @@ class Follower:
         except (AddressError, UnknownPlugin):
             raise
         except YarpError as error:
-            if not self._told:
+            if not self.why:
                 log.info("waiting for %s: %s", self._topic, error)
-            self._told = True
+            self.why = str(error)
             return False
-        self._told = False
+        self.why = ""
         self._grant()
         self._meet()
         return True

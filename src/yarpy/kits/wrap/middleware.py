@@ -150,6 +150,9 @@ class Heard(Received):
         self.source = source
         self.middleware = middleware
 
+    def __repr__(self) -> str:
+        return super().__repr__().replace("Heard(", "Received(", 1)
+
     def __getattr__(self, name: str) -> Any:
         """Read the envelope: `count` and `time` are not set yet."""
         if name not in ("count", "time"):

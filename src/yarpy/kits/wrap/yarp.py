@@ -12,7 +12,7 @@ from collections import deque
 from contextlib import suppress
 from typing import Any
 
-from yarpy.errors import DecodeError, LinkClosed, UnknownName, YarpError
+from yarpy.errors import DecodeError, LinkClosed, Timeout, UnknownName, YarpError
 from yarpy.kits.wrap.follower import Follower
 from yarpy.kits.wrap.middleware import Answer, Binding, Failure, Item, Received, question_of
 from yarpy.kits.wrap.port_end import PortEnd
@@ -115,7 +115,12 @@ class PortListener(PortEnd):
         self._follower = follower
 
     def listen(self, timeout: float | None) -> Received:
-        return received(self.read(timeout), self._shape, self._middleware)
+        try:
+            message = self.read(timeout)
+        except Timeout as error:
+            why = "" if self._follower is None else self._follower.why
+            raise Timeout(f"{error}: {why}" if why else str(error)) from None
+        return received(message, self._shape, self._middleware)
 
     def close(self) -> None:
         if self._follower is not None:

@@ -116,6 +116,7 @@ def test_stamps_of_envelopes_and_of_frames() -> None:
     for envelope in ("", "no stamp"):
         other = received(Message(DATA, b"".join(Packet(7).blocks), envelope), shape_of(int))
         assert (other.value, other.time, other.count, other.stamp) == (7, None, None, None)
+    assert repr(native) == "Received(value=3, count=4, time=2.5, source='', middleware='')"
     framed = received(sent(3, int, "frame"), shape_of(int))
     assert (framed.count, framed.time, framed.source) == (3, 1.5, "/eyes")
 
