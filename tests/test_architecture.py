@@ -411,6 +411,9 @@ def test_files_that_comments_name_are_there() -> None:
         roots += [SOURCE / "kits", SOURCE / "peers"]
         for number, line in enumerate(path.read_text("utf-8").splitlines(), 1):
             for name in re.findall(r"`([\w./]+\.py)`", line):
+                ring = name.partition("/")[0]
+                if ring in ("kits", "peers") and not (SOURCE / ring).exists():
+                    continue  # `make alone`
                 if not any((root / name).exists() for root in roots):
                     wrong.append(f"{relative(path)}:{number}: there is no {name}")
     assert wrong == []
