@@ -18,7 +18,7 @@ ROWS = [
 
 
 @pytest.mark.parametrize("envelope", [None, b"", b"free text"])
-@pytest.mark.parametrize(("spelled", "name", "payload"), ROWS)
+@pytest.mark.parametrize(("converted", "name", "payload"), ROWS)
 def test_there_and_back(converted: Converted, name: str, payload: bytes, envelope: bytes) -> None:
     data = b"".join(converted.parts(envelope))
     parts, text = restored(name, memoryview(data), envelope is not None)
@@ -26,7 +26,7 @@ def test_there_and_back(converted: Converted, name: str, payload: bytes, envelop
     assert text == (envelope or b"").decode()
 
 
-@pytest.mark.parametrize(("spelled", "name", "payload"), ROWS)
+@pytest.mark.parametrize(("converted", "name", "payload"), ROWS)
 def test_what_is_cut_off(converted: Converted, name: str, payload: bytes) -> None:
     data = memoryview(b"".join(converted.parts(b"text")))
     for end in range(len(data)):

@@ -142,7 +142,7 @@ def test_with_a_program_of_another_kind() -> None:
                 break
             time.sleep(0.05)
         assert "grüße" in hears.said
-        says.write_line("hello from there")
+        wait_until(lambda: says.write_line("hello from there") or reader.waiting)
         assert reader.read(timeout=HANG).value == "hello from there"
 
 
