@@ -141,9 +141,17 @@ def test_it_sees_our_node(rclpy: Rclpy, node: ros2.Node, own: str) -> None:
     space, name = node.name.rsplit("/", 1)
     wait_until(lambda: node.name in rclpy.do("nodes"), HANG)
     wait_until(lambda: [own, [STRING]] in rclpy.do("topics", name, space or "/"), HANG)
-    services = dict(rclpy.do("services", name, space or "/"))
-    assert services[f"{own}/flag"] == [FLAG]
-    assert services[f"{node.name}/get_parameters"] == ["rcl_interfaces/srv/GetParameters"]
+    services = {
+        (f"{own}/flag", FLAG),
+        (f"{node.name}/get_parameters", "rcl_interfaces/srv/GetParameters"),
+    }
+
+    def serves() -> bool:
+        found = rclpy.do("services", name, space or "/")
+        return services <= {(each, *types) for each, types in found}
+
+    wait_until(serves, HANG)
+    wait_until(lambda: rclpy.do("publishers_of", own), HANG)
     (row,) = rclpy.do("publishers_of", own)
     assert row[1] == STRING and row[3:] == ["RELIABLE", "TRANSIENT_LOCAL"]
     assert hash_of(writer.kind) in row[2]
