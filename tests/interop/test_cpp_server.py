@@ -11,6 +11,7 @@ from support.cpp import CppYarp
 from support.cpp_program import CppProgram
 from support.environment import configured_for
 from support.lasted import lasted
+from support.port import free_port
 from support.wait import HANG, wait_until
 
 import yarpy
@@ -48,8 +49,7 @@ def test_names_that_the_server_makes(cpp_names: CppYarp) -> None:
 
 
 def test_a_number_of_ones_own(cpp_names: CppYarp) -> None:
-    with yarpy.Port("") as probe:
-        number = probe.contact.port
+    number = free_port()
     with yarpy.Port("/mine", tcp_port=number) as port:
         assert port.contact.port == number
         assert cpp_names.run("exists", "/mine").returncode == 0

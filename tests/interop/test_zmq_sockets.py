@@ -12,6 +12,7 @@ import numpy as np
 import pytest
 from support.access import allow, write
 from support.lasted import lasted
+from support.port import free_port
 from support.wait import HANG, wait_until
 
 import yarpy
@@ -409,8 +410,8 @@ def test_a_pull_that_was_restarted_is_dialled_again(out: yarpy.Port, sockets: So
 def test_a_subscriber_finds_a_port_that_was_restarted(
     names: yarpy.LocalNames, sockets: Sockets
 ) -> None:
-    with yarpy.Port("/out", names=names) as out:
-        number = out.contact.port
+    number = free_port()
+    with yarpy.Port("/out", tcp_port=number, names=names) as out:
         socket = sockets.subscriber(out, b"", RECONNECT_IVL=20)
     with yarpy.Port("/out", tcp_port=number, names=names) as out:
         assert out.wait_for_outputs(timeout=HANG)

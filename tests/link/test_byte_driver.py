@@ -7,6 +7,7 @@ import threading
 import time
 
 import pytest
+from support.build import replaces_a_method
 from support.transport import ScriptTransport, scripted
 from support.wait import HANG
 
@@ -60,6 +61,7 @@ def test_what_goes_another_way_is_counted_when_its_reference_leaves() -> None:
     assert (driver.bytes_out, driver.aside, stream.aside) == (1010, 1000, 0)
 
 
+@replaces_a_method
 def test_who_is_asked_a_hundred_times_in_a_row_is_awake_also_after_long_silence(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:

@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-import socket
 import threading
 
 import pytest
+from support.port import free_port
 from support.wait import HANG, wait_until
 from support.yarp4 import administer_as_yarp4
 
@@ -77,12 +77,10 @@ def test_one_that_listens_a_moment_later(
     administer_as_yarp4(monkeypatch)
     found: list[Contact] = []
     asking = Versions(found.append)
-    with socket.socket() as held:
-        held.bind(("127.0.0.1", 0))  # the number is ours, and nobody listens
-        number = held.getsockname()[1]
-        contact = Contact("tcp", "/later", "127.0.0.1", number)
-        asking.ask(contact)
-        assert there.wait(HANG)
+    number = free_port()
+    contact = Contact("tcp", "/later", "127.0.0.1", number)
+    asking.ask(contact)
+    assert there.wait(HANG)
     with yarpy.Port("/later", names=names, tcp_port=number):
         wait_until(lambda: found == [contact])
     asking.close()

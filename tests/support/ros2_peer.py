@@ -22,11 +22,12 @@ from __future__ import annotations
 import contextlib
 import json
 import os
-import socket
 import sys
 from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
+
+from support.port import free_port
 
 STRING = "string data"
 ADD = {"request_definition": "int64 a\nint64 b", "response_definition": "int64 sum"}
@@ -41,9 +42,7 @@ def ros2_router() -> Iterator[int]:
     from yarpy.peers.zenoh.router import open_router
     from yarpy.peers.zenoh.transport import close
 
-    with socket.socket() as free:
-        free.bind(("127.0.0.1", 0))
-        port: int = free.getsockname()[1]
+    port = free_port()
     router = open_router([f"127.0.0.1:{port}"])
     try:
         yield port

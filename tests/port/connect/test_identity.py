@@ -10,6 +10,7 @@ from contextlib import contextmanager
 
 import pytest
 from support.listener import listening
+from support.port import free_port
 from support.wait import HANG, wait_until
 
 import yarpy
@@ -117,8 +118,8 @@ def test_a_question_is_not_asked_of_another_server(names: LocalNames) -> None:
 
 def test_an_address_leads_to_the_same_port_again_or_nowhere(names: LocalNames) -> None:
     with Port("/camera", names=names) as camera:
-        viewer = BufferedPort("/viewer", names=names)
-        number = viewer.contact.port
+        number = free_port()
+        viewer = BufferedPort("/viewer", names=names, tcp_port=number)
         camera.connect(f"/127.0.0.1:{number}")
         wait_until(lambda: camera._hub.outputs.links[0].route.peer == "/viewer")
         crash(viewer)

@@ -7,6 +7,7 @@ from collections.abc import Iterator
 from typing import Any
 
 import pytest
+from support.port import free_port
 from support.steps import chop, output
 from support.thrift_module import SPELLINGS, apache, call, data, everything, head, service
 from support.wait import HANG, wait_until
@@ -219,15 +220,15 @@ def test_a_service_in_a_loop() -> None:
 
 def test_a_server_that_is_gone_and_comes_again() -> None:
     names = yarpy.LocalNames()
-    server = yarpy.RpcServer("/thrift", service(), names=names)
-    port = server.address.rpartition(":")[2]
+    port = free_port()
+    server = yarpy.RpcServer("/thrift", service(), names=names, tcp_port=port)
     client = apache().Test.connect(f"thrift://{server.address}", timeout=HANG)
     with client:
         assert client.ping() == "pong"
         server.close()
         with pytest.raises(YarpError):
             client.ping()
-        with yarpy.RpcServer("/thrift", service(), names=names, tcp_port=int(port)):
+        with yarpy.RpcServer("/thrift", service(), names=names, tcp_port=port):
             assert client.ping() == "pong"
 
 
