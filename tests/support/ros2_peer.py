@@ -27,8 +27,6 @@ from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
-from support.port import free_port
-
 STRING = "string data"
 ADD = {"request_definition": "int64 a\nint64 b", "response_definition": "int64 sum"}
 ADD_TYPE = "example_interfaces/srv/AddTwoInts"
@@ -39,6 +37,8 @@ LATCHED = ":1:,1:,:,:,,"
 @contextlib.contextmanager
 def ros2_router() -> Iterator[int]:
     """A router of Zenoh on the loopback; its number."""
+    from support.port import free_port  # the peer is a program by itself, which has none
+
     from yarpy.peers.zenoh.router import open_router
     from yarpy.peers.zenoh.transport import close
 
