@@ -3,10 +3,13 @@
 import json
 import subprocess
 import sys
+from pathlib import Path
 
 import pytest
 from support.wait import HANG, wait_until
 
+from yarpy.kits.launch.console import control
+from yarpy.kits.launch.manager.session import Session
 from yarpy.kits.launch.supervise import process
 
 pytestmark = pytest.mark.skipif(not process.known(), reason="this system has no /proc to look at")
@@ -53,3 +56,21 @@ time.sleep(600)"</parameters></module>
         assert cli.run("status").returncode == 1  # nothing is left, not even who kept it
     finally:
         cli.run("down")
+
+
+def test_the_end_of_who_ran_it_is_waited_for(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    file = tmp_path / "m.xml"
+    file.write_text("<application><name>managed</name></application>")
+    session = Session()
+    session.choose(session.add(file).name)
+    looks, asked = [["managed"]] * 5, []  # who ends takes a moment
+
+    def ask(name: str, **request: str) -> dict[str, list[object]]:
+        asked.append((name, request["do"]))
+        return {"programs": []}
+
+    monkeypatch.setattr(control, "ask", ask)
+    monkeypatch.setattr(control, "running", lambda: looks.pop() if looks else [])
+    assert session.close() == "" and asked[-1] == ("managed", "down") and looks == []

@@ -129,7 +129,7 @@ class Session:
             time.sleep(_POLL)
 
     def close(self) -> str:
-        """End who runs it, if nothing runs; return what is to be known."""
+        """End who runs it, if nothing runs, and wait for that; return what is to be known."""
         status = self.status() if self.loaded is not None else None
         if status is None:
             return ""
@@ -137,6 +137,11 @@ class Session:
         if left := self.running():
             return f"{len(left)} modules run on: `yarpy status {name}`, `yarpy down {name}`"
         control.ask(name, do="down")
+        until = time.monotonic() + STOPPING
+        while name in control.running():
+            if time.monotonic() > until:
+                return f"{name} has not ended after {STOPPING:g} s: `yarpy status {name}` says why"
+            time.sleep(_POLL)
         return ""
 
     def _asked(self) -> dict[str, Any]:
