@@ -142,6 +142,25 @@ def test_numbers_of_silent_hosts_come_back(server, monkeypatch):
     assert len([address for address in tried if address[0] == "192.0.2.1"]) < 5
 
 
+def test_who_comes_again_at_the_same_address_is_not_the_one_before(server, monkeypatch):
+    """A port of C++ YARP registers, and listens a moment later."""
+    number, looks = free_port(), []
+
+    def again():
+        server.client.register("/again", "tcp", "127.0.0.1", number)
+        server.client.set("/again", "process", 2**22 + 1)
+
+    def refuses(contact):
+        looks.append(contact)
+        again()
+        return True
+
+    again()
+    monkeypatch.setattr(collector, "_refuses", refuses)
+    wait_until(lambda: len(looks) > 5 or yarpy.query("/again") is None)
+    assert yarpy.query("/again") is not None
+
+
 def test_a_complaint_has_the_name_looked_at(server, rounds):
     """A process that lives may have lost its port; who cannot reach it says so."""
     client = server.client

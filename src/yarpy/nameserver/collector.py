@@ -1,6 +1,7 @@
 """Collector: removes names from the name service when their ports are dead.
 
 Rules: a name goes only if its address actively refuses connections, seen `STRIKES` times in a row;
+whoever registers it anew begins anew, also at the same address, where it may not listen yet;
 a silent host may come back, and what never was a YARP port (no `process` property: a camera, a
 robot of another make) is not ours to judge. Ports of this host are left alone while their process
 lives; others are probed a few at a time. Of a host that is silent a few ports are tried in a round,
@@ -25,6 +26,8 @@ from yarpy.limit import number_in
 from yarpy.log import logger
 from yarpy.names.address import local_addresses
 from yarpy.nameserver.command import NameService
+from yarpy.nameserver.reply import Reply
+from yarpy.nameserver.store import Registration
 from yarpy.platform.process import lives
 
 log = logger("yarpy.name_server")
@@ -38,23 +41,23 @@ LEASE: Final = 300.0  # seconds in which a port has to listen on the number that
 
 
 class Collector:
-    """Watches the names of `service`; `unregister` takes a command that removes one."""
+    """Watches the names of `service`; `follow` takes the replies to the removal of one."""
 
     def __init__(
         self,
         service: NameService,
-        unregister: Callable[[Bottle], None],
+        follow: Callable[[Reply], None],
         own_name: str,
         interval: float = INTERVAL,
         lease: float = LEASE,
     ) -> None:
         self._service = service
-        self._unregister = unregister
+        self._follow = follow
         self._own_name = own_name
         self._interval = interval
         self._lease = lease
-        self._lent: dict[Contact, float] = {}  # when it is due; inf: it was taken up
-        self._strikes: dict[str, int] = {}
+        self._lent: dict[Registration, float] = {}  # when it is due; inf: it was taken up
+        self._strikes: dict[Registration, int] = {}
         self._silences: dict[str, int] = {}  # how often each name's port was silent in a row
         self._suspects: set[str] = set()  # reported as unreachable
         self._wake = threading.Event()
@@ -89,10 +92,12 @@ class Collector:
         here = set(local_addresses())
         ports, before = self._ports(), self._silences
         self._silences = {one.name: before[one.name] for one, _ in ports if one.name in before}
+        self._strikes = {one: self._strikes[one] for one, _ in ports if one in self._strikes}
         silent: Counter[str] = Counter()
-        for contact, process in sorted(ports, key=lambda port: before.get(port[0].name, 0)):
+        for port, process in sorted(ports, key=lambda port: before.get(port[0].name, 0)):
             if self._closed:
                 return
+            contact = port.contact
             local = contact.host in here
             if silent[contact.host] >= MOST_SILENT:
                 continue
@@ -107,64 +112,64 @@ class Collector:
                 self._silences[contact.name] = self._silences.get(contact.name, 0) + 1
             else:
                 self._silences.pop(contact.name, None)
-            self._judge(contact, bool(refuses))
+            self._judge(port, bool(refuses))
         self._end_leases()
 
     def _end_leases(self) -> None:
         """Take back numbers that nobody listens on. Of a host that is silent one is tried."""
         now, silent = time.monotonic(), set[str]()
         self._lent = {one: self._lent.get(one, now + self._lease) for one in self._borrowers()}
-        for contact, due in self._lent.items():
+        for port, due in self._lent.items():
             if due > now:
                 continue
             if self._closed:
                 return
-            if contact.host not in silent and _listens(contact, silent):
-                self._lent[contact] = inf
+            if port.contact.host not in silent and _listens(port.contact, silent):
+                self._lent[port] = inf
             else:
-                self._remove(contact)
+                self._remove(port)
 
-    def _borrowers(self) -> list[Contact]:
+    def _borrowers(self) -> list[Registration]:
         """Ports that have a number of ours, and did not say any more."""
         store = self._service.store
         with self._service.lock:
             return [
-                contact
-                for contact in store.contacts()
-                if contact.carrier == "tcp"
-                and store.numbers.lent(contact.name)
-                and not store.values(contact.name, "process")
+                port
+                for port in store.registrations()
+                if port.contact.carrier == "tcp"
+                and store.numbers.lent(port.name)
+                and not store.values(port.name, "process")
             ]
 
-    def _ports(self) -> list[tuple[Contact, int]]:
+    def _ports(self) -> list[tuple[Registration, int]]:
         """Registered YARP ports with their process ids."""
         found = []
         with self._service.lock:
-            for contact in self._service.store.contacts():
-                if contact.name == self._own_name or contact.carrier != "tcp":
+            for port in self._service.store.registrations():
+                if port.name == self._own_name or port.contact.carrier != "tcp":
                     continue
-                process = self._service.store.values(contact.name, "process")
+                process = self._service.store.values(port.name, "process")
                 if process:
-                    found.append((contact, number_in(process[0]) or 0))
+                    found.append((port, number_in(process[0]) or 0))
         return found
 
-    def _judge(self, contact: Contact, refuses: bool) -> None:
+    def _judge(self, port: Registration, refuses: bool) -> None:
         if not refuses:
-            self._strikes.pop(contact.name, None)
+            self._strikes.pop(port, None)
             return
-        strikes = self._strikes.get(contact.name, 0) + 1
-        self._strikes[contact.name] = strikes
+        strikes = self._strikes.get(port, 0) + 1
+        self._strikes[port] = strikes
         if strikes < STRIKES:
-            self._suspects.add(contact.name)
+            self._suspects.add(port.name)
             return
-        del self._strikes[contact.name]
-        self._remove(contact)
+        self._remove(port)
 
-    def _remove(self, contact: Contact) -> None:
+    def _remove(self, port: Registration) -> None:
         with self._service.lock:
-            if self._service.store.query(contact.name) != contact:
+            if self._service.store.registration(port.name) is not port:
                 return  # registered anew meanwhile
-        self._unregister(Bottle(["unregister", contact.name]))
+            reply = self._service.answer(Bottle(["unregister", port.name]))
+        self._follow(reply)
 
 
 def _listens(contact: Contact, silent: set[str]) -> bool:

@@ -154,7 +154,7 @@ class Serving:
             for queue in self._queues:
                 self._start(lambda queue=queue: self._work(queue), "wiring")  # type: ignore[misc]
             self._start(self._tell, "events")
-            self._collector = Collector(self.service, self._obey, name)
+            self._collector = Collector(self.service, self._follow, name)
             if discoverable:
                 self._open_responder()
         except BaseException:

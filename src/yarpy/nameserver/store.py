@@ -152,6 +152,7 @@ class NameStore:
         return len(self._ports)
 
     def registration(self, name: str) -> Registration | None:
+        """Return what is known of a name: another object whenever it is registered anew."""
         return self._ports.get(name)
 
     def query(self, name: str, network: str | None = None) -> Contact | None:
