@@ -385,12 +385,17 @@ def test_who_writes_without_waiting_drops_what_a_pull_does_not_take(
     pull = sockets.connected(zmq.PULL, out, RCVHWM=1, RCVBUF=4096)
     wait_until(lambda: len(out.outputs) == 1)
     body = bytes(200_000)
-    for number in range(60):
+    out.write(["00", body])
+    for number in range(1, 60):
         out.write([f"{number:02d}", body], timeout=0)
+    end = threading.Thread(target=out.write, args=(["60"],))  # which waits for its turn
+    end.start()
+    found = [""]
+    while found[-1] != "60":
+        found.append(yarpy.data.json.from_json(pull.recv())[0])
+    end.join(HANG)
     drops = out.stats.outputs[0].drops
-    assert 0 < drops < 60
-    found = [yarpy.data.json.from_json(pull.recv())[0] for _ in range(60 - drops)]
-    assert found[0] == "00" and found == sorted(found)
+    assert drops and found[1] == "00" and found == sorted(found) and len(found) == 62 - drops
 
 
 def test_a_pull_that_was_restarted_is_dialled_again(out: yarpy.Port, sockets: Sockets) -> None:

@@ -92,7 +92,8 @@ def test_what_the_master_refuses_is_said_once_and_keeps_nothing_else_out(
         time.sleep(3 * SOON)
         said = [each for each in caplog.records if "refuses registerPublisher" in each.message]
         assert "is registered with" not in caplog.text
-        assert len(said) <= 2, caplog.text  # as it opens, and by the new master
+        # As it opens, by the first master when it is asked again, and by the new one.
+        assert len(said) <= 3, caplog.text
 
 
 def test_rosnode_kill_closes_the_ports(graph: RosGraph) -> None:

@@ -10,7 +10,7 @@ from support.wait import wait_until
 from yarpy.kits.launch.run import program
 from yarpy.kits.launch.run.program import Program
 from yarpy.kits.launch.run.state_folder import Entry, StateFolder
-from yarpy.kits.launch.supervise import process
+from yarpy.kits.launch.supervise import process, process_tree
 
 pytestmark = pytest.mark.skipif(not process.known(), reason="this system has no /proc to look at")
 
@@ -94,6 +94,7 @@ passes({str(last)!r})
 def test_one_that_was_just_being_started_is_found_by_its_mark(state: StateFolder) -> None:
     found = begin(state, "import time; time.sleep(600)", port="/log/node/python")
     entry = replace(found.entry, pid=0, began=0, port="/log/node/python")
+    wait_until(lambda: process_tree.leader(entry.id))  # it has its mark
     again = program.found_again(state, entry)
     assert again is not None
     pid = found.entry.pid
