@@ -7,10 +7,10 @@ from pathlib import Path
 import pytest
 from support.wait import wait_until
 
-from yarpy.kits.launch.run import program
+from yarpy.kits.launch.run import process_tree, program
 from yarpy.kits.launch.run.program import Program
 from yarpy.kits.launch.run.state_folder import Entry, StateFolder
-from yarpy.kits.launch.supervise import process, process_tree
+from yarpy.kits.launch.supervise import process
 
 pytestmark = pytest.mark.skipif(not process.known(), reason="this system has no /proc to look at")
 
