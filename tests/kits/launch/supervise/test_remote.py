@@ -5,6 +5,7 @@ import threading
 import time
 from collections.abc import Callable, Iterator
 from pathlib import Path
+from types import SimpleNamespace
 from typing import Any
 
 import pytest
@@ -20,6 +21,8 @@ from yarpy.kits.launch.supervise import process, remote
 from yarpy.kits.launch.supervise.remote import RemoteHandle, RemoteRunner
 from yarpy.kits.launch.supervise.runner import Program
 from yarpy.kits.launch.supervise.supervisor import Supervisor
+from yarpy.port.connect import connecting
+from yarpy.port.keep import log_sender
 
 pytestmark = pytest.mark.skipif(not process.known(), reason="this system has no /proc to look at")
 
@@ -72,6 +75,27 @@ def test_lines_come_before_the_end_and_its_code(serve: Serve, runner: RemoteRunn
     assert started.end() == 3 and started.lines == ["one", "two"]
     assert started.handle.state == "ended" and started.handle.wait(1.0) == 3
     assert server.programs == []
+
+
+def test_one_that_ends_before_its_server_has_connected_is_heard(
+    serve: Serve, runner: RemoteRunner, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    ended = threading.Event()
+    finish = RemoteHandle.finish
+
+    def finish_and_tell(handle: RemoteHandle, code: int | None) -> None:
+        finish(handle, code)
+        ended.set()
+
+    def connect_late(*arguments: Any) -> Any:
+        assert ended.wait(HANG)
+        return connecting.connect(*arguments)
+
+    monkeypatch.setattr(RemoteHandle, "finish", finish_and_tell)
+    monkeypatch.setattr(log_sender, "connecting", SimpleNamespace(connect=connect_late))
+    serve()
+    started = Started(runner, "sh", "-c", "echo last words; exit 3")
+    assert started.end() == 3 and started.lines == ["last words"]
 
 
 def test_it_ends_when_it_is_asked_to_and_the_deaf_are_killed(
@@ -181,8 +205,9 @@ class Cpp:
 
 
 def test_nobody_knows_how_a_program_of_cpp_has_ended(
-    runner: RemoteRunner, network: yarpy.LocalNames
+    runner: RemoteRunner, network: yarpy.LocalNames, monkeypatch: pytest.MonkeyPatch
 ) -> None:
+    monkeypatch.setattr(remote, "_LAST_WORDS", 0.1)  # nobody tells any
     cpp = Cpp(network)
     with cpp.server:
         started = Started(runner, "sleep", "600")

@@ -23,6 +23,7 @@ from yarpy.kits.launch.run.client import RunClient
 from yarpy.kits.launch.supervise.runner import Program
 from yarpy.limit import OUTPUT_LINE
 from yarpy.names.base import NameClient
+from yarpy.port.connection import ConnectionEvent
 from yarpy.port.port import Port
 from yarpy.wire.message import Message
 
@@ -31,7 +32,7 @@ AGAIN: Final = 1.0  # ... while the server does not answer
 ANSWER: Final = 3.0  # seconds that an answer may take
 STARTING: Final = 10.0  # ... that of a start
 _KILL: Final = 9  # what SIGKILL is there; this computer may have none
-_LAST_WORDS: Final = 1.0  # seconds for output that was written before the end
+_LAST_WORDS: Final = 5.0  # seconds until the server has told what was written before the end
 _ABANDONED: Final = 300.0  # seconds in which a program that may have been started is looked for
 
 Line = Callable[[str], None]
@@ -244,8 +245,11 @@ class RemoteHandle:
         self._ended = threading.Event()
         self._told = threading.Lock()  # no line comes after the end
         self._over = False
+        self._all_said = threading.Event()  # whoever tells what it says has gone
         name = f"/up{runner.server}/{tag}/{time.monotonic_ns()}"
-        self.port: Port = Port(name, callback=self._hear, names=names)
+        self.port: Port = Port(
+            name, callback=self._hear, on_connection=self._see_connection, names=names
+        )
 
     @property
     def state(self) -> str:
@@ -275,6 +279,7 @@ class RemoteHandle:
 
     def lose(self, why: str) -> None:
         """Note that its server does not answer."""
+        self._all_said.clear()  # the next server tells what it says from then on
         self.detail = f"{self._runner.server} does not answer: {why}"
 
     def finish(self, code: int | None) -> None:
@@ -284,9 +289,8 @@ class RemoteHandle:
         ).start()
 
     def _finish(self, code: int | None) -> None:
-        until = time.monotonic() + _LAST_WORDS
-        while self.port.inputs and time.monotonic() < until:
-            time.sleep(0.02)  # the port of its output is closed by its server
+        # Its server connects beside the start, and may do so only now if it ended at once.
+        self._all_said.wait(_LAST_WORDS)
         self.port.close(0.0)
         with self._told:
             self._over = True
@@ -311,6 +315,10 @@ class RemoteHandle:
             except YarpError as error:
                 self.lose(str(error))
                 self._ended.wait(AGAIN)
+
+    def _see_connection(self, event: ConnectionEvent) -> None:
+        if event.incoming and not event.created:
+            self._all_said.set()
 
     def _hear(self, message: Message) -> None:
         words = message.as_(Bottle)
