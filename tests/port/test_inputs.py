@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import contextlib
+import select
 import socket
 import threading
 import time
@@ -14,6 +15,7 @@ from support.wait import HANG, runs, wait_until
 
 from yarpy.nameserver.local import LocalNames
 from yarpy.port import inputs
+from yarpy.port.answer import name_conflicts
 from yarpy.port.connection import ConnectionEvent
 from yarpy.port.port import Port
 from yarpy.wire.message import Message
@@ -148,6 +150,27 @@ def test_a_program_that_reads_late_gets_what_a_replaced_connection_brought_first
         wait_until(lambda: _is_over(first))
         time.sleep(1.4 * inputs.SETTLING)  # the second one would have begun
         assert [in_.read(timeout=HANG).value for _ in range(9)] == [[n] for n in range(9)]
+
+
+@pytest.mark.skipif(not hasattr(select, "POLLRDHUP"), reason="the system cannot tell")
+def test_a_sender_that_has_hung_up_behind_what_nobody_has_read_is_no_other_program(
+    names: LocalNames, caplog: pytest.LogCaptureFixture, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """It was taken for two, and turned away for 90 s, where the program reads late."""
+    monkeypatch.setattr(name_conflicts, "SOON", HANG)
+    with Port("/in", names=names) as in_:
+        found = in_._hub.inputs
+        seen: list[object] = []
+        for number in range(5):
+            with socket.create_connection(("127.0.0.1", in_.contact.port)) as sock:
+                sock.sendall(b"CONNECT /same\r\n")
+                assert sock.recv(1000).startswith(b"Welcome"), f"refused: {number}"
+                wait_until(lambda: [link for link in found.links if link not in seen])
+                seen.extend(found.links)
+                sock.sendall(b"D\r\n1\r\n" * 5)
+            wait_until(found.links[0].driver.transport.hung_up)
+        assert not found._conflicts.refusal("/same")
+    assert "two programs" not in caplog.text
 
 
 def test_a_sender_may_connect_as_often_as_it_likes_over_datagrams(

@@ -375,6 +375,7 @@ class Inputs:
 
 def _lives(link: Inbound) -> bool:
     """Return whether an input would show its end, and there is no sign of that. Datagrams do not:
-    there, what a sender leaves behind when it dials again looks like another one's."""
-    silent = link.carrier.delivery.connectionless
-    return not (silent or link.closing or link.driver.transport.ended())
+    there, what a sender leaves behind when it dials again looks like another one's. An end may be
+    behind what nobody has read yet."""
+    silent, transport = link.carrier.delivery.connectionless, link.driver.transport
+    return not (silent or link.closing or transport.ended() or transport.hung_up())
