@@ -9,7 +9,7 @@ from math import inf
 
 import pytest
 from support.port import free_port
-from support.wait import wait_until
+from support.wait import HANG, wait_until
 
 import yarpy
 from yarpy.nameserver import collector
@@ -159,6 +159,20 @@ def test_who_comes_again_at_the_same_address_is_not_the_one_before(server, monke
     monkeypatch.setattr(collector, "_refuses", refuses)
     wait_until(lambda: len(looks) > 5 or yarpy.query("/again") is None)
     assert yarpy.query("/again") is not None
+
+
+def test_many_complaints_at_once_are_one_proof(monkeypatch):
+    """Who waits for a port dials again and again, also before it listens."""
+    monkeypatch.setattr(collector.Collector.__init__, "__defaults__", (2 * HANG, 2 * HANG))
+    looks = []
+    monkeypatch.setattr(collector, "_refuses", lambda contact: looks.append(contact) or True)
+    with yarpy.NameServer() as server:
+        server.client.register("/again", "tcp", "127.0.0.1", free_port())
+        server.client.set("/again", "process", os.getpid())
+        for number in range(1, 5):
+            server.client.announce("/again", False)
+            wait_until(lambda n=number: len(looks) >= n or yarpy.query("/again") is None)
+        assert yarpy.query("/again") is not None
 
 
 def test_a_complaint_has_the_name_looked_at(server, rounds):

@@ -1,7 +1,8 @@
 """Collector: removes names from the name service when their ports are dead.
 
-Rules: a name goes only if its address actively refuses connections, seen `STRIKES` times in a row;
-whoever registers it anew begins anew, also at the same address, where it may not listen yet;
+Rules: a name goes only if its address actively refuses connections, seen `STRIKES` times in a row,
+a round apart at least: who has just registered may not listen yet, and many may complain of that
+at once; whoever registers it anew begins anew, also at the same address;
 a silent host may come back, and what never was a YARP port (no `process` property: a camera, a
 robot of another make) is not ours to judge. Ports of this host are left alone while their process
 lives; others are probed a few at a time. Of a host that is silent a few ports are tried in a round,
@@ -57,7 +58,7 @@ class Collector:
         self._interval = interval
         self._lease = lease
         self._lent: dict[Registration, float] = {}  # when it is due; inf: it was taken up
-        self._strikes: dict[Registration, int] = {}
+        self._strikes: dict[Registration, tuple[int, float]] = {}  # how many, and when the last was
         self._silences: dict[str, int] = {}  # how often each name's port was silent in a row
         self._suspects: set[str] = set()  # reported as unreachable
         self._wake = threading.Event()
@@ -157,8 +158,11 @@ class Collector:
         if not refuses:
             self._strikes.pop(port, None)
             return
-        strikes = self._strikes.get(port, 0) + 1
-        self._strikes[port] = strikes
+        now = time.monotonic()
+        strikes, last = self._strikes.get(port, (0, -inf))
+        if now - last >= self._interval:
+            strikes, last = strikes + 1, now
+            self._strikes[port] = strikes, last
         if strikes < STRIKES:
             self._suspects.add(port.name)
             return
