@@ -46,7 +46,7 @@ from yarpy.port.hub import Hub
 from yarpy.route import CarrierSpec, Route, masked, parse_carrier
 from yarpy.threads import Thread
 
-JOINING: Final = 0.5  # seconds for a receiver to join a multicast group
+JOINING: Final = 2.0  # seconds for a receiver to join a multicast group, on a busy computer
 _POLL: Final = 0.05  # seconds between attempts to reach a port that is not there yet
 
 
