@@ -35,7 +35,14 @@ from yarpy.peers.ros2.message.action import (
 )
 from yarpy.peers.ros2.message.hash import full_name, message_hash, service_hash
 from yarpy.peers.ros2.message.parse import parse_message, parse_service
-from yarpy.peers.ros2.message.source import DISTROS, Rosbags, Standard, distro, installed
+from yarpy.peers.ros2.message.source import (
+    DISTROS,
+    Rosbags,
+    Shipped,
+    Standard,
+    distro,
+    installed,
+)
 
 _MET: Final = 1000  # types of peers that are kept
 
@@ -175,7 +182,7 @@ class Library:
             if name not in self._others and not any(
                 isinstance(source, Rosbags) and source.name == name for source in self.sources
             ):
-                self._others[name] = Library([Rosbags(name), Standard()])
+                self._others[name] = Library([Rosbags(name), Standard(), Shipped()])
         return [*self._others.values()]
 
     def _class(self, definition: Definition) -> type[Message]:
@@ -220,7 +227,7 @@ def hash_of(kind: type[Message] | Service) -> str:
 
 def standard_sources() -> tuple[Source, ...]:
     """The packages of this process's environment, rosbags, and what yarpy brings."""
-    return installed(os.environ), Rosbags(distro(os.environ)), Standard()
+    return installed(os.environ), Rosbags(distro(os.environ)), Standard(), Shipped()
 
 
 @cache

@@ -1,8 +1,9 @@
-"""The sources of the text of a type of ROS 2: installed packages, what rosbags brings, and a few
-that are always there (`standard`).
+"""The sources of the text of a type of ROS 2: installed packages, what rosbags brings, a few that
+are always there (`standard`), and the packages used most (`shipped`).
 
 Rules: as in `ros/message/source.py`. Of the distributions that rosbags knows, the one of ROS_DISTRO
-is asked first; the others only for a type whose hash a peer has named.
+is asked first; the others only for a type whose hash a peer has named. Whoever has no hashes is not
+asked with `Shipped`: definitions of Jazzy are others than those of Humble, and nobody would notice.
 """
 
 from __future__ import annotations
@@ -14,6 +15,7 @@ from typing import Final
 
 from yarpy.peers.ros.message import source
 from yarpy.peers.ros.message.source import Packages
+from yarpy.peers.ros2.message import shipped
 from yarpy.peers.ros2.message.standard import ACTIONS, MESSAGES, SERVICES
 
 #: with type hashes, the newest first; a computer without ROS takes the one with the longest support
@@ -52,6 +54,18 @@ class Standard(source.Standard):
 
     messages = MESSAGES
     services = SERVICES
+    actions: Mapping[str, str] = ACTIONS
 
     def find(self, name: str, kind: str) -> str | None:
-        return ACTIONS.get(name) if kind == "action" else super().find(name, kind)
+        return self.actions.get(name) if kind == "action" else super().find(name, kind)
+
+
+class Shipped(Standard):
+    """The packages that programs of ROS 2 use most, of Jazzy."""
+
+    messages = shipped.MESSAGES
+    services = shipped.SERVICES
+    actions = shipped.ACTIONS
+
+    def __str__(self) -> str:
+        return "the packages of Jazzy that yarpy brings"
