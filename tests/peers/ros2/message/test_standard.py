@@ -4,7 +4,9 @@ import json
 
 import pytest
 from support import rclpy_venv
+from support.type_hashes import hashes_of, names_of, others
 
+from yarpy.peers.ros2.message import standard as definitions
 from yarpy.peers.ros2.message.library import Library, hash_of
 from yarpy.peers.ros2.message.source import Rosbags, Standard
 from yarpy.peers.ros2.message.standard import MESSAGES, SERVICES
@@ -36,6 +38,14 @@ def test_examples_are_those_of_std_msgs() -> None:
         assert b"".join(found().to_ros()) == b"".join(other().to_ros()), name
         count += 1
     assert count == 28
+
+
+def test_hashes_of_the_examples_are_those_of_ros() -> None:
+    published = hashes_of("example_interfaces")
+    named = {name for name in names_of(definitions) if name.startswith(EXAMPLES)}
+    # those of the action are in test_action.py
+    assert {name for name in named if "/action/" not in name} == published.keys()
+    assert others(published, Library([Standard()])) == []
 
 
 @pytest.mark.peer("rclpy")
