@@ -8,7 +8,8 @@ python dds_peer.py obey                does what the lines of its input say, eac
     ["writer", ID, TOPIC, RELIABILITY, DURABILITY, DEPTH]    RELIABILITY: reliable, best_effort
     ["reader", ID, TOPIC, RELIABILITY, DURABILITY, DEPTH]    DURABILITY: volatile, transient_local
                                   and perhaps {"deadline", "lifespan", "lease": milliseconds},
-                                  and {"type": "Int32"} instead of String
+                                  and {"type": "Int32"} instead of String, or "Growing": one
+                                  that is called String, too; {"xcdr2": true} takes that alone
     ["events", ID]                 what the library counts of its events, by name
     ["write", ID, TEXT ...]        and waits until reliable readers have confirmed it
     ["close", ID]
@@ -28,6 +29,7 @@ from cyclonedds import builtin
 from cyclonedds.core import DDSException, InstanceState, Policy, Qos
 from cyclonedds.domain import DomainParticipant
 from cyclonedds.idl import IdlStruct
+from cyclonedds.idl.annotations import appendable
 from cyclonedds.idl.types import int32
 from cyclonedds.pub import DataWriter
 from cyclonedds.sub import DataReader
@@ -45,6 +47,15 @@ class String_(IdlStruct, typename="std_msgs.msg.dds_.String_"):  # noqa: N801
 @dataclass
 class Int32_(IdlStruct, typename="std_msgs.msg.dds_.Int32_"):  # noqa: N801
     data: int32
+
+
+@dataclass
+@appendable
+class Growing(IdlStruct, typename="std_msgs.msg.dds_.String_"):
+    data: str
+
+
+TYPES: dict[str, Any] = {"String": String_, "Int32": Int32_, "Growing": Growing}
 
 
 def say(*words: object) -> None:
@@ -65,7 +76,10 @@ def qos_of(
     ]
     if latched:
         policies.append(Policy.DurabilityService(0, kept, -1, -1, -1))
-    for key, value in (more or {}).items():
+    said = dict(more or {})
+    if said.pop("xcdr2", False):
+        policies.append(Policy.DataRepresentation(False, True))
+    for key, value in said.items():
         time = duration(milliseconds=value)
         policies.append(
             {
@@ -120,7 +134,7 @@ def obey() -> None:
             if verb in ("writer", "reader"):
                 topic, reliability, durability, depth, *more = rest
                 said = more[0] if more else {}
-                key = (topic, Int32_ if said.pop("type", "") == "Int32" else String_)
+                key = (topic, TYPES[said.pop("type", "String")])
                 if key not in topics:
                     topics[key] = Topic(part, f"rt{topic}", key[1])
                 qos = qos_of(reliability, durability, depth, said)

@@ -45,6 +45,16 @@ def test_what_is_told(caplog: pytest.LogCaptureFixture) -> None:
     ]
 
 
+def test_whom_the_middleware_keeps_apart(caplog: pytest.LogCaptureFixture) -> None:
+    mismatch = Mismatch("/ear", OURS, strict=False)
+    for _ in range(2):
+        mismatch.refused(token(TEXT, NO_HASH), "it may grow there", "declare it as @final")
+    assert said(caplog) == [
+        "/ear and a program do not hear each other at /chatter: both call their type "
+        "std_msgs/msg/String, but it may grow there; declare it as @final"
+    ]
+
+
 def test_what_fits(caplog: pytest.LogCaptureFixture) -> None:
     mismatch = Mismatch("/ear", OURS, strict=False)
     mismatch.look(token(TEXT, ONE))

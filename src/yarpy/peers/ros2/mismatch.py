@@ -2,7 +2,8 @@
 
 Rules: each node is told of once for each type, and not more than `MOST_TOLD` in all, whichever
 threads look: those who are there are told of in the thread that asks, those who come in another.
-Where somebody has the same type without saying which version, it counts as ours.
+Where somebody has the same type without saying which version, it counts as ours, unless the
+middleware has compared both and says otherwise.
 """
 
 from __future__ import annotations
@@ -38,20 +39,32 @@ class Mismatch:
         same = theirs.type == ours.type
         if same and not self._strict and NO_HASH in (theirs.hash, ours.hash):
             return
-        with self._lock:
-            if (token.node, theirs) in self._told or len(self._told) >= MOST_TOLD:
-                return
-            self._told.add((token.node, theirs))
-        log.warning(
-            "%s and %s do not hear each other at %s: it is %s there and %s here; %s",
-            self._port_name,
-            "a program" if token.node == NOBODY else f"the node {readable(str(token.node))}",
-            ours.name,
-            readable(_shown(theirs)),
-            _shown(ours),
+        self._tell(
+            token,
+            f"it is {readable(_shown(theirs))} there and {_shown(ours)} here",
             "give both the same version of that package"
             if same
             else "give both one type, or one of them another name",
+        )
+
+    def refused(self, token: Token, why: str, remedy: str) -> None:
+        """Tell of a peer whose type has the name of ours, and that the middleware keeps apart."""
+        name = _shown(self._ours._replace(hash=NO_HASH))
+        self._tell(token, f"both call their type {name}, but {why}", remedy)
+
+    def _tell(self, token: Token, what: str, remedy: str) -> None:
+        assert token.key is not None
+        with self._lock:
+            if (token.node, token.key) in self._told or len(self._told) >= MOST_TOLD:
+                return
+            self._told.add((token.node, token.key))
+        log.warning(
+            "%s and %s do not hear each other at %s: %s; %s",
+            self._port_name,
+            "a program" if token.node == NOBODY else f"the node {readable(str(token.node))}",
+            self._ours.name,
+            what,
+            remedy,
         )
 
 

@@ -2,9 +2,10 @@
 
 Rules: whoever promises less than the other side asks for is not connected. Where no QoS is said, a
 subscriber asks for what all publishers promise, looked at again when one comes or goes, and a
-publisher promises what anybody asks for; where one is said, the log names whom it keeps out. What
-comes faster than it is read is counted, and so is what the network loses. Who comes and goes is
-told by the participant's `pump`: a message costs no look at that.
+publisher promises what anybody asks for; where one is said, the log names whom it keeps out, and
+so it does where a type is another one. What comes faster than it is read is counted, and so is what
+the network loses. Who comes and goes is told by the participant's `pump`: a message costs no look
+at that.
 """
 
 from __future__ import annotations
@@ -20,6 +21,7 @@ from yarpy.errors import LocalProtocolError, UnknownName, UnknownType
 from yarpy.log import logger
 from yarpy.peers.ros2 import kind as kinds
 from yarpy.peers.ros2.carrier import Incoming, Outgoing
+from yarpy.peers.ros2.dds.apart import WHY, apart
 from yarpy.peers.ros2.dds.library import delete, load
 from yarpy.peers.ros2.dds.participant import POOL
 from yarpy.peers.ros2.dds.qos import dds_qos
@@ -59,6 +61,7 @@ class DdsEndpoint(Inbox):
         self._entity: Any = None
         self._shown: list[Any] = []  # readers or writers that are told of
         self._owned: tuple[Any, ...] = ()
+        self._mismatch: Any = None
         self._look: Any = None  # at others of another type
         self.events = Events()
         self._news = 0  # the statuses that tell who has come or gone
@@ -103,7 +106,8 @@ class DdsEndpoint(Inbox):
         self.qos = self._fitting()
         self._entity = self._show(self._made())
         self._owned = (self._entity, self._topic)
-        self._look = Mismatch(self.port_name, self._key, strict=False).look
+        self._mismatch = Mismatch(self.port_name, self._key, strict=False)
+        self._look = self._mismatch.look
         self._part.watch.add(self.name, self._peers, self._look)
 
     def _fitting(self) -> Qos:
@@ -152,9 +156,11 @@ class DdsEndpoint(Inbox):
     def _note(self, entity: Any, found: int) -> None:
         """Tell of what the statuses of a reader or writer say."""
         for event in events_of(entity, found, self.role == PUBLISHER):
-            if event.kind == INCOMPATIBLE and not self._given:
+            if event.policy in WHY:
+                self._tell_apart(entity, event.policy)
+            elif event.kind == INCOMPATIBLE and not self._given:
                 continue  # we are about to do as they like
-            if event.kind == INCOMPATIBLE:
+            elif event.kind == INCOMPATIBLE:
                 log.warning(
                     "%s: somebody at %s promises less than we ask for, or asks for more than we "
                     "promise (%s; ours is %s): leave the qos out of ros2+dds+qos.NAME://..., or "
@@ -165,6 +171,11 @@ class DdsEndpoint(Inbox):
                 with self._counting:
                     self.dropped += event.times
             self.events.tell(event)
+
+    def _tell_apart(self, entity: Any, policy: str) -> None:
+        part, class_, key = self._part, self._class, self._key
+        for token in apart(policy, part, entity, class_, key, self._peers):
+            self._mismatch.refused(token, *WHY[policy])
 
     def close(self) -> None:
         self.interrupt()

@@ -8,7 +8,16 @@ from typing import Any, Final
 from yarpy.peers.ros2.dds.library import load
 from yarpy.peers.ros2.event import CHANGED, DEADLINE, INCOMPATIBLE, LOST, MESSAGE, Event
 
-POLICIES: Final = {2: "durability", 4: "deadline", 8: "liveliness", 11: "reliability"}
+TYPE: Final = "type_consistency"
+REPRESENTATION: Final = "data_representation"
+POLICIES: Final = {
+    2: "durability",
+    4: "deadline",
+    8: "liveliness",
+    11: "reliability",
+    24: TYPE,
+    25: REPRESENTATION,
+}
 
 _WRITES: Final = {
     "OfferedIncompatibleQos": ("get_offered_incompatible_qos_status", INCOMPATIBLE),
