@@ -196,6 +196,7 @@ PEERS: dict[str, Callable[[], str]] = {
         package="python3-rosbag topic-tools",
     ),
     "rosmaster": _programs(*_ROS_TOOLS, package=" ".join(f"python3-{n}" for n in _ROS_TOOLS)),
+    "tf2": _modules("tf2_py", "geometry_msgs.msg", packages="python3-tf2 python3-geometry-msgs"),
     "tf_echo": _files("/usr/lib/tf/tf_echo", package="tf-tools"),
     "image_view": _files("/usr/lib/image_view/image_saver", package="ros-image-view"),
     "thrift": _made(thrift_venv.prepare),

@@ -12,6 +12,7 @@ import math
 import threading
 import time
 from bisect import bisect_right, insort
+from collections.abc import Callable
 from dataclasses import dataclass, field
 from typing import Final
 
@@ -112,12 +113,39 @@ class Buffer:
         Waits `timeout` seconds for what is not known yet, None: for ever. Raises NoTransform (a
         LookupError), which says what is missing.
         """
-        until = None if timeout is None else _now() + timeout
         target, source = frame(target), frame(source)
+        return self._wait(lambda: self._lookup(target, source, round(time * 1e9)), timeout)
+
+    def lookup_full(
+        self,
+        target: str,
+        target_time: float,
+        source: str,
+        source_time: float,
+        fixed: str,
+        timeout: float | None = 0.0,
+    ) -> Found:
+        """Return where `source` lay at `source_time` in `target` as that lay at `target_time`, both
+        in seconds, as seen from the frame `fixed`, which stays where it is meanwhile: where a robot
+        of now has what its camera saw then. The time of what is found is that of `target`. As
+        `lookup_transform_full` of tf2; else as `lookup`.
+        """
+        target, source, fixed = frame(target), frame(source), frame(fixed)
+
+        def find() -> Found:
+            then = self._lookup(fixed, source, round(source_time * 1e9))
+            now = self._lookup(target, fixed, round(target_time * 1e9))
+            return Found(target, source, now.time, now.pose @ then.pose)
+
+        return self._wait(find, timeout)
+
+    def _wait(self, find: Callable[[], Found], timeout: float | None) -> Found:
+        """Return what `find` finds, once it does."""
+        until = None if timeout is None else _now() + timeout
         with self._changed:
             while True:
                 try:
-                    return self._lookup(target, source, round(time * 1e9))
+                    return find()
                 except NoTransform:
                     left = None if until is None else until - _now()
                     if left is not None and left <= 0:

@@ -2,6 +2,7 @@
 
     transforms = yarpy.ros.Transforms(node)
     found = transforms.lookup("map", "camera", timeout=5.0)     # found.pose, found.time
+    found = transforms.lookup_full("base", 0, "camera", then, "map")
     transforms.send("map", "camera", (1.0, 0.0, 0.5))           # now, a frame that moves
     transforms.send("base", "laser", (0.1, 0.0, 0.2), fixed=True)
 
@@ -75,6 +76,18 @@ class Tree:
     ) -> Found:
         """Return where the frame `source` lies in `target`; see `Buffer.lookup`."""
         return self.buffer.lookup(target, source, time, timeout)
+
+    def lookup_full(
+        self,
+        target: str,
+        target_time: float,
+        source: str,
+        source_time: float,
+        fixed: str,
+        timeout: float | None = 0.0,
+    ) -> Found:
+        """Return where `source` lay then in `target` of another time; see `Buffer.lookup_full`."""
+        return self.buffer.lookup_full(target, target_time, source, source_time, fixed, timeout)
 
     def can_transform(self, target: str, source: str, time: float = 0.0) -> bool:
         """Return whether `lookup` would succeed now."""
