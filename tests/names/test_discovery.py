@@ -92,9 +92,14 @@ def registered(line: str) -> str:
     return f"registration name {line.split()[-1]} ip 10.0.0.9 port 10000 type tcp"
 
 
+def found_by(namespace: str, port: int) -> Contact | None:
+    """What is found in the end, however busy the computer is."""
+    return search(namespace, port, tries=60, group=GROUP)
+
+
 def test_search_finds(port: int) -> None:
     with Responder(registered, port, group=GROUP):
-        found = search("/root", port, group=GROUP)
+        found = found_by("/root", port)
     assert found == Contact("tcp", "/root", "10.0.0.9", 10000)
 
 
@@ -112,7 +117,7 @@ def test_search_finds_the_right_one_among_noise(port: int) -> None:
     thread.start()
     try:
         with Responder(registered, port, group=GROUP):
-            assert search("/mine", port, group=GROUP) == Contact("tcp", "/mine", "10.0.0.9", 10000)
+            assert found_by("/mine", port) == Contact("tcp", "/mine", "10.0.0.9", 10000)
     finally:
         stop.set()
         thread.join()
@@ -129,7 +134,7 @@ def test_a_server_that_does_not_know_the_name(port: int) -> None:
     with Responder(service.answer_multicast, port, group=GROUP):
         assert search("/root", port, timeout=0.1, tries=1, group=GROUP) is None
         service.answer_text("register /root tcp h 5")
-        assert search("/root", port, group=GROUP) == Contact("tcp", "/root", "h", 5)
+        assert found_by("/root", port) == Contact("tcp", "/root", "h", 5)
 
 
 def test_two_servers_share_a_computer(port: int) -> None:
@@ -141,7 +146,7 @@ def test_two_servers_share_a_computer(port: int) -> None:
         Responder(two.answer_multicast, port, group=GROUP),
     ):
         for name, number in (("/one", 1), ("/two", 2)):
-            found = search(name, port, group=GROUP)
+            found = found_by(name, port)
             assert found is not None and found.port == number
 
 
@@ -157,7 +162,7 @@ def test_close_ends_the_thread(port: int) -> None:
     assert held.threads() <= before
     assert lasted(start) < 10
     responder.start()
-    assert search("/again", port, group=GROUP) is not None
+    assert found_by("/again", port) is not None
     responder.close()
 
 
@@ -166,4 +171,4 @@ def test_a_question_as_large_as_can_be_does_no_harm(port: int) -> None:
         with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as sender:
             text = "NAME_SERVER query " + "x" * (DISCOVERY_DATAGRAM - 100)
             sender.sendto(encode_datagram(text), (GROUP, port))
-        assert search("/root", port, group=GROUP) is not None
+        assert found_by("/root", port) is not None

@@ -7,7 +7,8 @@ import socket
 import threading
 
 from support.listener import listening
-from support.wait import wait_until
+from support.port import free_port
+from support.wait import HANG, wait_until
 
 import yarpy
 from yarpy.contact import Contact
@@ -18,19 +19,22 @@ def test_what_is_told() -> None:
     with (
         yarpy.NameServer() as server,
         yarpy.Port("/out") as out,
-        yarpy.Port("/in"),
+        yarpy.Port("/in") as in_,
         socket.create_server(("127.0.0.1", 0)) as silent,
     ):
         out.connect("/in")
-        with socket.create_server(("127.0.0.1", 0)) as gone:
-            number = gone.getsockname()[1]
-        server.client.register("/gone", "tcp", "127.0.0.1", number)
+        assert in_.wait_for_inputs(timeout=HANG)
+        server.client.register("/gone", "tcp", "127.0.0.1", free_port())
         server.client.register("/silent", "tcp", "127.0.0.1", silent.getsockname()[1])
         contacts = {one.name: one for one in server.client.list()}
         survey = Survey(lambda: list(contacts.values()))
         assert survey.told(contacts["/out"]) == {"alive": None}
-        survey.want()
-        wait_until(lambda: survey.told(contacts["/out"])["alive"])
+
+        def all_have_answered() -> bool:
+            survey.want()  # for some seconds, in which a busy port may not answer in time
+            return all(survey.told(contacts[name])["alive"] for name in ("/out", "/in"))
+
+        wait_until(all_have_answered)
         told = survey.told(contacts["/out"])
         assert told["process"] == os.getpid()
         assert told["program"]

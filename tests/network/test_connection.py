@@ -140,9 +140,11 @@ def test_waiting_for_both_ports(names: LocalNames) -> None:
             time.sleep(0.1)
             ports.append(Port(name, names=names))
 
-    threading.Thread(target=open_later, daemon=True).start()
+    opening = threading.Thread(target=open_later, daemon=True)
+    opening.start()
     network.connect("/out", "/in", names=names, timeout=HANG)
     assert network.is_connected("/out", "/in", names=names)
+    opening.join()  # a port is there before its constructor has ended
     for port in ports:
         port.close()
     started = time.monotonic()
@@ -158,11 +160,15 @@ def test_waiting_for_a_port_and_a_connection(names: LocalNames) -> None:
     assert not network.wait_for("/in", timeout=0.05, names=names)
     with Port("/out", names=names) as out:
         ports: list[Port] = []
-        threading.Timer(0.1, lambda: ports.append(Port("/in", names=names))).start()
+        opening = threading.Timer(0.1, lambda: ports.append(Port("/in", names=names)))
+        opening.start()
         assert network.wait_for("/in", timeout=HANG, names=names)
         assert not network.wait_for("/out", "/in", timeout=0.05, names=names)
-        threading.Timer(0.1, out.connect, ("/in",)).start()
+        connecting = threading.Timer(0.1, out.connect, ("/in",))
+        connecting.start()
         assert network.wait_for("/out", "/in", timeout=HANG, names=names)
+        for timer in (opening, connecting):
+            timer.join()
         ports[0].close()
 
 

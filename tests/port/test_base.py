@@ -132,6 +132,7 @@ def test_waiting_for_a_port_that_comes_later(names: LocalNames) -> None:
         threading.Timer(0.1, lambda: later.append(Port("/in", names=names))).start()
         out.connect("/in", timeout=HANG)
         assert out.write([1]) == 1
+        wait_until(lambda: later)  # it is there before its constructor has ended
         assert later[0].read(timeout=HANG).value == [1]
         later[0].close()
 
@@ -155,9 +156,11 @@ def test_waiting_for_connections(names: LocalNames) -> None:
     with Port("/out", names=names) as out, Port("/in", names=names) as in_:
         assert not out.wait_for_outputs(timeout=0.02)
         assert not in_.wait_for_inputs(timeout=0.02)
-        threading.Timer(0.05, out.connect, ("/in",)).start()
+        later = threading.Timer(0.05, out.connect, ("/in",))
+        later.start()
         assert in_.wait_for_inputs(timeout=HANG)
         assert out.wait_for_outputs(timeout=HANG)
+        later.join()
         assert not out.wait_for_outputs(2, timeout=0.02)
         for wrong in ("1", None, 1.5):
             with pytest.raises(TypeError, match="`count` is a number of connections, not"):
@@ -258,8 +261,8 @@ def test_a_port_whose_callbacks_know_it_is_dropped_too(kind: str, names: LocalNa
         alive = weakref.ref(program)
         with pytest.warns(ResourceWarning, match='port "/dropped" was dropped without being'):
             del program
-            gc.collect()
-        assert alive() is None
+            # A thread of the connection may be at work with it still.
+            wait_until(lambda: gc.collect() >= 0 and alive() is None)
         wait_until(lambda: names.query("/dropped") is None)
 
 

@@ -47,7 +47,7 @@ def put(box: Mailbox, link: Link, value: object) -> None:
     box.put(link, message(value))  # type: ignore[arg-type]
 
 
-def taken(box: Mailbox, timeout: float = 1.0) -> object:
+def taken(box: Mailbox, timeout: float = HANG) -> object:
     found = box.take(timeout)
     return None if found is None else found.value[0]
 

@@ -80,12 +80,12 @@ def _short(monkeypatch: pytest.MonkeyPatch) -> None:
             monkeypatch.setattr(kind, "limits", limits)
     monkeypatch.setattr(http, "TIME", SHORT)
     monkeypatch.setattr(xmlrpc, "TIME", SHORT)
-    monkeypatch.setattr(handshake, "TIMEOUT", SHORT)
 
 
 def dialled(port: Port, what: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Driver:
     """A connection in the middle of something."""
     if what in RAW:
+        monkeypatch.setattr(handshake, "TIMEOUT", SHORT)  # not for those that do greet
         if "tls" in what:
             prepare(tmp_path, monkeypatch)
         sock = socket.create_connection(("127.0.0.1", port.contact.port), HANG)

@@ -77,12 +77,12 @@ def test_less_than_a_word_costs_no_thread() -> None:
 
 @waits_for_a_word
 def test_who_stays_silent_is_let_go(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(pending, "TIMEOUT", 0.2)
-    with accepting(echo) as acceptor, dial(acceptor) as spoke, dial(acceptor) as sock:
+    with accepting(echo) as acceptor, dial(acceptor) as spoke:
         spoke.sendall(b"some word")
         assert spoke.recv(9) == b"some word"
-        sock.sendall(b"x")
-        with suppress(ConnectionResetError):
+        monkeypatch.setattr(pending, "TIMEOUT", 0.2)
+        with dial(acceptor) as sock, suppress(ConnectionResetError):
+            sock.sendall(b"x")
             assert sock.recv(1) == b""
         spoke.sendall(b"and more")  # who has said what it speaks may be silent
         assert spoke.recv(8) == b"and more"
@@ -223,7 +223,7 @@ def test_acceptor_speaks_first_when_it_must() -> None:
 def test_close_frees_the_number_and_the_silent() -> None:
     with accepting(echo) as acceptor:
         sock = dial(acceptor)
-        time.sleep(0.02)
+        wait_until(lambda: len(acceptor._pending) == 1)
         number = acceptor.port
     assert sock.recv(1) == b""
     sock.close()

@@ -266,15 +266,16 @@ def test_gathered_messages_that_had_just_left_when_a_signal_came_are_no_drops(
 def test_gathered_messages_that_never_left_are_drops() -> None:
     link, transport = open_link(FastTcp)
     attempts = 0
-    for number in range(200):  # a flood: the last ones wait for the timer
-        attempts += 1
-        link.send(Packet([number]))
-        if link.sender.gathered > 3:
-            break
-    waiting = link.sender.gathered
-    assert waiting
-    sent = attempts - waiting
-    transport.fails_after = transport.sends
+    with link.sender.lock:  # the timer waits for it
+        for number in range(200):  # a flood: the last ones wait for the timer
+            attempts += 1
+            link.sender.transmit(Packet([number]), None)
+            if link.sender.gathered > 3:
+                break
+        waiting = link.sender.gathered
+        assert waiting
+        sent = attempts - waiting
+        transport.fails_after = transport.sends
     wait_until(lambda: link.broken)
     assert (link.counter.unconfirmed, link.counter.drops) == (sent, waiting)
     assert total(link) == attempts

@@ -93,6 +93,7 @@ def says_no_more(sock: socket.socket) -> None:
 def test_who_is_of_yarp_4(names: LocalNames, monkeypatch: pytest.MonkeyPatch) -> None:
     with Port("/it", names=names) as port:
         assert probe.introduce(port.contact) == ("/it", False)
+    monkeypatch.setattr(probe, "VERSION", HANG)
     with impostor(of_cpp(UNKNOWN)) as contact:
         assert probe.introduce(contact) == ("/it", True)
     with impostor(of_cpp(b'1 "" (())\r\n<ACK>\r\n')) as contact:

@@ -29,8 +29,8 @@ def test_each_step_has_its_share_of_the_time():
     look = lambda: left.append(scope.left())  # noqa: E731
     with scope.Scope(0.0):  # the call beneath a signal handler has no say
         closing((look, 0.5), (look, 1.0)).run(60.0)
-    assert 29.0 < left[0] <= 30.0
-    assert 59.0 < left[1] <= 60.0
+    assert 20.0 < left[0] <= 30.0
+    assert 50.0 < left[1] <= 60.0
 
 
 def test_an_error_leaves_out_nothing(caplog):
@@ -138,7 +138,7 @@ def test_the_last_step_has_time_of_its_own():
     look = lambda: left.append(scope.remaining())  # noqa: E731
     closing((look, 0.5), (look, 1.0)).run(0.0, last=60.0)
     assert left[0] == 0.0
-    assert 59.0 < left[1] <= 60.0
+    assert 50.0 < left[1] <= 60.0
 
 
 def test_but_none_after_ctrl_c():

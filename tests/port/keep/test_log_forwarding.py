@@ -83,9 +83,9 @@ def test_a_slow_reader_is_told_what_is_lost(
         wait_until(lambda: forwarder._sender._wanted is not None)  # it knows who reads
         for number in range(5):
             log.info("line %d", number)
-        wait_until(forwarder._sender._news._lock.locked)  # it has seen them
-        go.set()
         log.info("last")
+        go.set()
+        forwarder._sender._news.wake()
         texts = [read(logger).text for _ in range(3)]
         assert texts[0].endswith("lines before this one are lost")
         assert texts[1:] == ["line 4", "last"]
