@@ -171,8 +171,8 @@ from yarpy.cli import signals
 signals.watch()
 thread = threading.Thread(target=time.sleep, args=(30,), daemon=True)
 thread.start()
-threading.Timer(0.2, lambda: signal.pthread_kill(thread.ident, signal.SIGTERM)).start()
 try:
+    threading.Timer(0.2, lambda: signal.pthread_kill(thread.ident, signal.SIGTERM)).start()
     threading.Event().wait()
 except signals.Interrupted as signal_:
     print("ended by", signal_.number, flush=True)

@@ -80,7 +80,7 @@ import sys, yarpy
 with yarpy.NameServer(), yarpy.Port("/out") as out, yarpy.Port("/in") as in_:
     out.connect("/in", "json_lines")
     out.write(["hello", 1, [2.5]], yarpy.Stamp(3, 4.5))
-    message = in_.read(timeout=5)
+    message = in_.read(timeout=30)
     print(message.value, message.stamp, message.source, in_.inputs[0].carrier)
     print(yarpy.disconnect("/out", "/in"), out.outputs)
     with yarpy.RpcServer("/server", lambda message: sum(message.value)):
@@ -127,7 +127,7 @@ print(os.environ["YARPY_SERVER"].partition("+")[0])
 with yarpy.Port("/out") as out, yarpy.Port("/in") as in_:
     out.connect("/in", "json_here")
     out.write(["hello", 1])
-    print(in_.read(timeout=5).value, in_.inputs[0].carrier)
+    print(in_.read(timeout=30).value, in_.inputs[0].carrier)
     print([contact.name for contact in yarpy.names().list()])
 """
 

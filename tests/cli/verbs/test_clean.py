@@ -19,10 +19,10 @@ def test_living_and_dead(cli, names):
         names.register("/clean/dead", "tcp", "127.0.0.1", 1)
         names.register("/clean/group", "mcast")
         taken = names.register("/clean/taken", "tcp", "127.0.0.1", int(alive.address[10:]))
-        said = cli.run("clean", "--timeout", "1")
+        said = cli.run("clean", "--timeout", "30")
         assert (said.returncode, said.stderr) == (0, "")
         assert said.stdout == (
-            "Using a timeout of 1 seconds\n" + HEAD + "got 6 port(s)\n"
+            "Using a timeout of 30 seconds\n" + HEAD + "got 6 port(s)\n"
             f"Testing /clean/alive at tcp://{alive.address}/\n"
             "Testing /clean/dead at tcp://127.0.0.1:1/\n"
             "* No response, removing port /clean/dead\n"

@@ -7,6 +7,7 @@ import pytest
 from support.multicast import needs_multicast
 from support.port import free_port
 from support.ros_graph import ros_graph
+from support.wait import HANG
 
 import yarpy
 from yarpy.names import client
@@ -23,16 +24,16 @@ def test_the_configured_server(cli, server):
 def test_what_listens_there_is_no_name_server_that_answers(here, names, monkeypatch):
     """Such as one that was stopped: it takes connections all the same."""
     monkeypatch.setattr(client.YarpNameClient.__init__, "__defaults__", (0.3,))  # seconds
-    monkeypatch.setattr("yarpy.names.client.WHO", 0.3)
     monkeypatch.setattr("yarpy.names.discovery.search", lambda *_, **__: None)
     with (
         socket.create_server(("127.0.0.1", 0)) as stopped,
         yarpy.BufferedPort("/detect/port", names=names) as port,
     ):
-        for address, what in (
-            (f"127.0.0.1:{stopped.getsockname()[1]}", "a name server that was stopped (`fg`"),
-            (port.address, "is an ordinary port"),
+        for address, seconds, what in (
+            (f"127.0.0.1:{stopped.getsockname()[1]}", 0.3, "a name server that was stopped (`fg`"),
+            (port.address, HANG, "is an ordinary port"),
         ):
+            monkeypatch.setattr("yarpy.names.client.WHO", seconds)
             monkeypatch.setenv("YARPY_SERVER", address)
             said = here("detect")
             assert said.code == 1 and "FOUND" not in said.out

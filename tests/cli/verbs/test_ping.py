@@ -5,6 +5,7 @@ import re
 import threading
 
 import pytest
+from support.wait import wait_until
 
 import yarpy
 from yarpy.cli.verbs.ping import read_description, seconds, spread
@@ -92,7 +93,7 @@ def test_rate(here, names):
         match = re.search(r"^Period is ([\d.]+) \+/- [\d.e-]+ \((\d+)\)$", said.out, re.M)
         assert match is not None
         assert 0.04 < float(match[1]) < 0.2 and 5 < int(match[2]) < 25
-        assert port.outputs == []
+        wait_until(lambda: not port.outputs)
 
 
 def test_no_rate(here, names):

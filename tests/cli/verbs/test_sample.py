@@ -20,14 +20,15 @@ def test_drops_and_repeats_at_a_constant_rate(cli, names):
         started = time.monotonic()
         for number in range(50):
             source.write([number], yarpy.Stamp(number, 1.0))
-            time.sleep(0.01)
-        values = [sink.read(timeout=HANG) for _ in range(30)]
+            time.sleep(0.005)
+        values = []
+        while len(values) < 30 or values[-2].value != [49]:  # the last one comes again
+            values.append(sink.read(timeout=HANG))
         passed = time.monotonic() - started
         numbers = [message.value[0] for message in values]
         assert numbers == sorted(numbers)
         assert len(set(numbers)) < 40  # many were dropped
-        assert numbers[-1] == 49 and numbers.count(49) > 1  # the last one comes again
-        assert 1.0 < passed < 4.0  # 30 messages at 20 Hz
+        assert passed > 0.035 * len(values)  # at 20 Hz
         assert values[-1].stamp == yarpy.Stamp(49, 1.0)
         process.wait_line("^49$", stream="out")
 

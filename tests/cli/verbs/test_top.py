@@ -1,17 +1,19 @@
 """`yarpy top`."""
 
+import itertools
 import json
 import os
 import signal
 import subprocess
 import sys
 import time
+from types import SimpleNamespace
 
 import pytest
 from support.wait import HANG, wait_until
 
 import yarpy
-from yarpy.cli.verbs.top import looks
+from yarpy.cli.verbs import top
 
 
 @pytest.fixture(scope="module")
@@ -84,13 +86,16 @@ def test_a_terminal(cli, ports):
         os.close(primary)
 
 
-def test_asking_that_takes_long_is_done_less_often():
-    class Slow:
+@pytest.mark.parametrize(("took", "waited"), [(0.02, 0.98), (0.6, 1.4)])
+def test_asking_that_takes_long_is_done_less_often(monkeypatch, took, waited):
+    class Sampler:
         def look(self):
-            time.sleep(0.02)
+            pass
 
+    ticks = itertools.count(0.0, took)
+    monkeypatch.setattr(top, "time", SimpleNamespace(monotonic=lambda: next(ticks)))
     waits = []
-    found = looks(Slow(), waits.append)
+    found = top.looks(Sampler(), waits.append)
     for _ in range(2):
         next(found)
-    assert waits and waits[0] == pytest.approx(1.0, abs=0.3)
+    assert waits == [pytest.approx(waited)]

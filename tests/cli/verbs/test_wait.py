@@ -26,7 +26,8 @@ def test_a_connection_that_comes(cli, names):
 def test_the_time_is_over(here):
     code, out, err = here("wait", "/wait/never", "--timeout", "0.2")
     assert (code, out) == (1, "Waiting for /wait/never...\n")
-    assert err.startswith('error: the 0.2 s are over: no port "/wait/never" is registered')
+    # Behind a warning where the name server takes longer than these.
+    assert 'error: the 0.2 s are over: no port "/wait/never" is registered' in err
 
 
 def test_a_wait_that_ends_early_is_not_said_again(here, monkeypatch):
@@ -37,7 +38,7 @@ def test_a_wait_that_ends_early_is_not_said_again(here, monkeypatch):
 
 def test_it_says_what_is_missing(here, names):
     with yarpy.Port("/wait/here", names=names):
-        assert here("wait", "/wait/here", "/wait/there", "--timeout", "0.2")[2] == (
+        assert here("wait", "/wait/here", "/wait/there", "--timeout", "0.2")[2].endswith(
             'error: the 0.2 s are over: "/wait/here" is there, but does not send to "/wait/there"\n'
         )
 

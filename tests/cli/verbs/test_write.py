@@ -6,7 +6,7 @@ import sys
 from typing import NamedTuple
 
 import pytest
-from support.wait import HANG
+from support.wait import HANG, wait_until
 
 import yarpy
 from yarpy.cli.verbs.write import taken, value_of
@@ -106,7 +106,7 @@ def test_a_signal_closes_it_in_good_order(cli, reader, names):
         assert process.wait() == 1
     assert "Interrupting..." in process.stderr
     assert names.query("/write/a") is None
-    assert reader.inputs == []
+    wait_until(lambda: not reader.inputs)
 
 
 def test_type_of_the_port(cli, reader, names):
