@@ -12,6 +12,7 @@ from support.process import Process
 from support.wait import HANG, wait_until
 
 import yarpy
+from yarpy.port.connect.reconnect import RECONNECTOR
 
 CARRIERS = ("tcp", "fast_tcp", "udp", "mcast", "text", "text_ack")
 TWO_PORTS = """
@@ -153,6 +154,11 @@ while True:
 """
 
 
+def is_looked_up(port: yarpy.BufferedPort) -> bool:
+    found = map(RECONNECTOR._keepalive._signs.get, port._hub.inputs.links)
+    return any(sign is not None and sign.contact is not None for sign in found)
+
+
 @pytest.mark.parametrize("carrier", CARRIERS)
 def test_a_killed_sender_of_theirs(network: CppYarp, carrier: str) -> None:
     """It starts again unconnected; we ask it to send to us as before."""
@@ -161,7 +167,8 @@ def test_a_killed_sender_of_theirs(network: CppYarp, carrier: str) -> None:
         for _ in range(2):
             flows(port)
             if carrier in ("udp", "mcast"):
-                time.sleep(0.6)  # a sender of datagrams has to be looked up while it lives
+                # A sender of datagrams has to be looked up while it lives.
+                wait_until(lambda: is_looked_up(port), what="looked up")
             writer.kill()
             wait_until(lambda: not port.inputs, what="its end is seen")
             writer = network.python_popen(CPP_WRITER)

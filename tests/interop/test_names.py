@@ -172,7 +172,7 @@ def test_a_cpp_server_goes_on_with_our_database(cpp: CppYarp) -> None:
 
 def test_a_cpp_server_is_found(cpp_server: CppYarp) -> None:
     # C++ listens for questions on YARP_PORT_RANGE, which is the server's own port here.
-    found = search("/root", cpp_server.port)
+    found = search("/root", cpp_server.port, tries=60)
     assert found == Contact("tcp", "/root", "127.0.0.1", cpp_server.port)
 
 

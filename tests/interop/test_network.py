@@ -73,10 +73,10 @@ def test_we_ask_their_ports(peer: CppProgram) -> None:
     assert yarpy.exists("/cpp/out")
     assert yarpy.exists(f"/{contact.address}"), "a port by its address alone"
     assert not yarpy.exists("/nope")
-    assert yarpy.wait_for("/cpp/in", timeout=1)
+    assert yarpy.wait_for("/cpp/in", timeout=HANG)
     assert not yarpy.wait_for("/nope", timeout=0.1)
     yarpy.connect("/cpp/out", "/cpp/in", "fast_tcp")
-    assert yarpy.wait_for("/cpp/out", "/cpp/in", timeout=1)
+    assert yarpy.wait_for("/cpp/out", "/cpp/in", timeout=HANG)
     lines = yarpy.ping("/cpp/out")
     assert lines[0] == f"This is /cpp/out at tcp://{contact.address}/"
     assert "There is an output connection from /cpp/out to /cpp/in using fast_tcp" in lines

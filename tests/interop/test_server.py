@@ -3,8 +3,8 @@
 import contextlib
 import signal
 import sys
-import time
 from collections.abc import Iterator
+from pathlib import Path
 
 import pytest
 from support.cpp import CppYarp
@@ -85,6 +85,12 @@ def test_what_the_server_prints(programs: CppYarp) -> None:
         assert "Traceback" not in server.stderr
 
 
+def written(home: Path) -> bool:
+    """Whether the port and the rule are in the files, for good."""
+    ports, rules = ((home / name).read_bytes() for name in ("ports.db", "subscriptions.db"))
+    return b"/cpp" in ports and b"/ours" in rules and not [*home.glob("*.db-journal")]
+
+
 def test_a_database_outlives_the_server(programs: CppYarp) -> None:
     """C++ ports do not register again by themselves: the server has to remember them."""
     databases = ("--portdb", "ports.db", "--subdb", "subscriptions.db")
@@ -92,7 +98,7 @@ def test_a_database_outlives_the_server(programs: CppYarp) -> None:
         with serving(programs, *databases) as server:
             peer.do("port = yarp.BufferedPortBottle(); assert port.open('/cpp'); port.setStrict()")
             assert programs.run("connect", "--persist", "/ours", "/cpp").returncode == 0
-            time.sleep(0.5)  # what changed is written a moment later
+            wait_until(lambda: written(programs.home), what="what changed is written")
             server.kill()
         with serving(programs, *databases):
             assert programs.run("exists", "/cpp").returncode == 0
