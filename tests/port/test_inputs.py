@@ -11,7 +11,7 @@ from itertools import groupby
 
 import pytest
 from support.lasted import lasted
-from support.wait import HANG, runs, wait_until
+from support.wait import HANG, inside, runs, wait_until
 
 from yarpy.nameserver.local import LocalNames
 from yarpy.port import inputs
@@ -213,6 +213,29 @@ def test_closing_waits_for_a_callback_with_what_a_replaced_connection_brought(
         go.set()
         port.close()
         assert done.is_set()
+
+
+def test_closing_waits_until_the_program_is_told_of_an_end_that_came_before(
+    names: LocalNames,
+) -> None:
+    told: list[bool] = []
+    telling, go = threading.Event(), threading.Event()
+
+    def tell(event: ConnectionEvent) -> None:
+        if not event.created:
+            telling.set()
+            assert go.wait(HANG)
+        told.append(event.created)
+
+    port = Port("/in", names=names, on_connection=tell)
+    with socket.create_connection(("127.0.0.1", port.contact.port)) as sock:
+        sock.sendall(b"CONNECT /out\r\n")
+        wait_until(lambda: told)
+    assert telling.wait(HANG) and not port.inputs
+    closing = inside("Inputs.close", go.set)
+    port.close()
+    assert told == [True, False]
+    closing.join(HANG)
 
 
 def test_unrooted_names_do_not_displace(names: LocalNames) -> None:

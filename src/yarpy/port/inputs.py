@@ -360,11 +360,12 @@ class Inputs:
         self.mailbox.close()
 
     def close(self) -> None:
-        """End them, with the answers that are on their way, and wait for their threads."""
+        """End them, with the answers that are on their way, and wait for their threads: also for
+        those that tell the program of an end that came just before."""
         goodbye.let_answers_leave(self.links, min(0.3, scope.remaining()))
         for link in self.links:
             link.close()
-        for link in (*self.links, *self.leaving):
+        for link in (*self.links, *self.leaving, *self._telling):
             if link.thread is not None and link.thread is not waited_by():
                 link.thread.join(min(3.0, scope.remaining()))
 
