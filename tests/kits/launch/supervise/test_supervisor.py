@@ -204,6 +204,30 @@ def test_what_is_ended_by_hand_can_be_started_again(network: yarpy.LocalNames) -
     assert left(running) == {}
 
 
+@pytest.mark.parametrize("moment", ["stopping", "stopped"])
+def test_what_is_started_again_while_its_end_is_told_is_not_over(
+    network: yarpy.LocalNames, moment: str
+) -> None:
+    begun = threading.Event()
+
+    def news(label: str, text: str) -> None:
+        if text == moment and not begun.is_set():
+            begun.set()
+            again = threading.Thread(target=running.begin, args=("a",))
+            again.start()
+            again.join(HANG)
+
+    running = supervisor(module("a"), names=network, news=news)
+    running.start()
+    unit = running.units["a"]
+    wait_until(lambda: unit.state == "running")
+    first = unit.handle
+    running.take_off("a")
+    wait_until(lambda: unit.state == "running" and unit.handle is not first)
+    assert begun.is_set() and not running.over.is_set()
+    running.stop()
+
+
 def test_at_rest_nothing_runs_and_nothing_is_over(network: yarpy.LocalNames) -> None:
     running = supervisor(module("a"), module("b", *TRUE), names=network)
     running.rest()

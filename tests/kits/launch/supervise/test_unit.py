@@ -236,6 +236,49 @@ def test_restarting_while_it_runs_waits_or_is_over() -> None:
     assert unit.join(HANG) and len(runner.handles) == 5
 
 
+def test_one_that_is_wanted_again_while_it_rests_starts_again(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    resting, rested = threading.Event(), threading.Event()
+
+    def rest(unit: Unit) -> None:
+        resting.set()
+        assert rested.wait(HANG)
+
+    monkeypatch.setattr(Unit, "_rest", rest)
+    runner = Fake()
+    unit, _ = started(runner)
+    wait_until(lambda: unit.running)
+    unit.stop()
+    assert resting.wait(HANG) and not unit.over
+    unit.restart()
+    rested.set()
+    wait_until(lambda: len(runner.handles) == 2 and unit.state == "running")
+    unit.stop()
+    assert unit.join(HANG) and unit.over
+
+
+def test_one_that_is_wanted_again_in_its_last_moment_starts_again() -> None:
+    runner = Fake()
+    wanted = threading.Event()
+
+    def changed(unit: Unit) -> None:
+        if unit.state == "stopped" and not wanted.is_set():
+            wanted.set()
+            again = threading.Thread(target=unit.restart)
+            again.start()
+            again.join(HANG)
+            assert not unit.over
+
+    unit = Unit(Module("a", "a"), runner, Ready(), changed=changed)
+    unit.start()
+    wait_until(lambda: unit.state == "running")
+    unit.stop()
+    wait_until(lambda: len(runner.handles) == 2 and unit.state == "running")
+    unit.stop()
+    assert unit.join(HANG)
+
+
 def test_lines_are_numbered_and_the_oldest_are_forgotten() -> None:
     unit, _ = started(Fake(*[1] * 4, 0))
     assert unit.join(HANG)

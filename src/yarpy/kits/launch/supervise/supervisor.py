@@ -100,14 +100,20 @@ class Supervisor:
     def restart(self, label: str) -> None:
         """End a program and start it again. Raises UnknownName."""
         self.find(label).restart()
-        self._off.discard(label)
+        self._turn_on(label)
 
     def begin(self, label: str) -> None:
-        """Start a program that has ended, or was taken off. Raises UnknownName."""
+        """Start a program that has ended, or was taken off, also while it ends. Raises
+        UnknownName."""
         unit = self.find(label)
-        self._off.discard(label)
-        if unit.state in FINAL:
+        if unit.state in (*FINAL, "stopping"):
             unit.restart()
+        self._turn_on(label)
+
+    def _turn_on(self, label: str) -> None:
+        """Let the end of a program count again, once nobody can take it for ended."""
+        self._off.discard(label)
+        self._look_whether_over()
 
     def take_off(self, label: str, at_once: bool = False) -> None:
         """End a program, until it is started again by hand; `at_once` with SIGKILL. Raises
@@ -265,9 +271,11 @@ class Supervisor:
             self._news(unit.label, text)
         elif unit.state != "waiting":
             self._news(unit.label, f"{unit.state}: {unit.detail}" if unit.detail else unit.state)
-        if unit.state in FINAL and all(
-            one.state in FINAL and one.label not in self._off for one in self.units.values()
-        ):
+        if unit.state in FINAL:
+            self._look_whether_over()
+
+    def _look_whether_over(self) -> None:
+        if all(one.over and one.label not in self._off for one in self.units.values()):
             self.over.set()
 
     def _place(self, unit: Unit) -> None:

@@ -27,7 +27,6 @@ WELL: Final = 10.0  # seconds after which a program is said to run well
 TRIES: Final = 10  # starts in a row that did not run so long, until it is given up
 FINAL: Final = ("ended", "failed", "stopped")
 _COUNT: Final = itertools.count(1)  # the lines of units that are told of no other count
-_LAST: Final = 1.0  # seconds for a thread that has nothing to do any more
 
 
 class Waiter(Protocol):
@@ -77,7 +76,8 @@ class Unit:
         self._again = False
         self._silent = ""  # why it was not started, by a server that may be there again soon
         self._ended = threading.Event()
-        self._lock = threading.Lock()  # of the thread, which `restart` may start again
+        self._lock = threading.Lock()  # of whether the thread goes on, and begins once more
+        self._lives = False
         self._thread: threading.Thread | None = None
 
     @property
@@ -90,33 +90,38 @@ class Unit:
         """Return whether its process is there."""
         return self.state in ("running", "stopping")
 
+    @property
+    def over(self) -> bool:
+        """Return whether it has ended, and nobody has asked for it again."""
+        with self._lock:
+            return self.state in FINAL and not self._again
+
     def start(self) -> None:
         """Begin. Nothing if it has begun."""
         with self._lock:
-            if self._thread is None or not self._thread.is_alive():
-                self._stop.clear()
-                self._again = False
+            if not self._lives:
+                self._lives = True
+                self._renew()
                 self._thread = threading.Thread(
-                    target=self._live, name=f"yarpy unit {self.label}", daemon=True
+                    target=self._run, name=f"yarpy unit {self.label}", daemon=True
                 )
                 self._thread.start()
 
     def restart(self) -> None:
         """End it, if it runs, and start it at once, whatever its policy is."""
-        self._again = True
-        self._stop.set()  # cuts short what it waits for
-        if self.state == "running" and self.handle is not None:
-            self.handle.terminate()
         with self._lock:
-            thread = self._thread
-        if self.state in FINAL and thread is not None:
-            thread.join(_LAST)
-        self.start()
+            self._again = True
+            self._stop.set()  # cuts short what it waits for
+            handle = self.handle if self.state == "running" else None
+        if handle is not None:
+            handle.terminate()
+        self.start()  # unless its thread finds `_again`
 
     def stop(self) -> None:
         """Ask it to end, without waiting for it."""
-        self._again = False
-        self._stop.set()
+        with self._lock:
+            self._again = False
+            self._stop.set()
         if self.state in ("running", "stopping") and self.handle is not None:
             self._enter("stopping")
             self.handle.terminate()
@@ -134,6 +139,21 @@ class Unit:
         if thread is not None:
             thread.join(timeout)
         return thread is None or not thread.is_alive()
+
+    def _run(self) -> None:
+        while True:
+            self._live()
+            with self._lock:
+                if not self._again:
+                    self._lives = False  # whoever wants it from now on starts it anew
+                    return
+                self._renew()
+
+    def _renew(self) -> None:
+        """Begin a life; the lock is held."""
+        self.state = "waiting"
+        self._again = False
+        self._stop.clear()
 
     def _live(self) -> None:
         quick, pause = 0, FIRST_PAUSE
@@ -170,11 +190,11 @@ class Unit:
             self.restarts += 1
 
     def _take_again(self) -> bool:
-        if not self._again:
+        with self._lock:
+            if self._again:
+                self._renew()
+                return True
             return False
-        self._again = False
-        self._stop.clear()
-        return True
 
     def _begin(self) -> bool:
         """Wait, and start; return whether it runs, or could not be tried."""
