@@ -12,6 +12,7 @@ import pytest
 from support.wait import HANG, wait_until
 
 from yarpy.kits.launch.supervise import local, process
+from yarpy.kits.launch.supervise.line import Lines
 from yarpy.kits.launch.supervise.local import LocalHandle, LocalRunner
 from yarpy.kits.launch.supervise.runner import Program, Runner
 from yarpy.limit import OUTPUT_LINE
@@ -127,6 +128,21 @@ def test_one_that_becomes_no_group_is_not_left(
     with pytest.raises(OSError, match="access denied"):
         python(runner, "import time; time.sleep(600)")
     assert len(pids) == 1 and not runs(pids[0])
+
+
+def test_the_last_lines_come_however_slowly_they_are_taken(
+    runner: LocalRunner, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    class Slow(Lines):
+        def feed(self, data: bytes) -> Iterator[str]:
+            for line in super().feed(data):
+                threading.Event().wait(0.2)
+                yield line
+
+    monkeypatch.setattr(local, "_LAST_WORDS", 0.05)
+    monkeypatch.setattr(local, "Lines", Slow)
+    started = python(runner, "print('one'); print('two')")
+    assert started.wait() == 0 and started.lines == ["one", "two"]
 
 
 @PROC

@@ -10,6 +10,7 @@ for its end.
 
 from __future__ import annotations
 
+import math
 import os
 import signal
 import subprocess
@@ -25,7 +26,8 @@ from yarpy.platform.group import START, Group
 from yarpy.platform.process import KILL, signal_one
 
 GRACE: Final = 5.0  # seconds from SIGTERM to SIGKILL
-_LAST_WORDS: Final = 1.0  # seconds for output that was written before the end
+_LAST_WORDS: Final = 1.0  # seconds without a word in which somebody else holds the output open
+_LONGEST: Final = 60.0  # seconds for whoever takes the last lines
 _UNKILLABLE: Final = 2.0  # seconds after SIGKILL until a process is given up
 _POLL: Final = 0.02  # seconds between looks at what is left of a program
 _CHUNK: Final = 1 << 16  # bytes
@@ -97,6 +99,7 @@ class LocalHandle:
         self._ended = threading.Event()
         self._told = threading.Lock()  # no line comes after the end
         self._over = False
+        self._read_last = 0.0  # when it began to wait for output, inf while it hands some on
         self.detail = ""
         self.left_behind = 0
         """The number of its processes that were there when the first one had ended."""
@@ -148,10 +151,12 @@ class LocalHandle:
         lines = Lines()
         with out:
             while True:
+                self._read_last = time.monotonic()
                 try:
                     data = out.read(_CHUNK)
                 except OSError:
                     break
+                self._read_last = math.inf
                 if not data:
                     break
                 for line in lines.feed(data):
@@ -169,11 +174,21 @@ class LocalHandle:
         if self._timer is not None:
             self._timer.cancel()
         self._sweep()
-        reader.join(_LAST_WORDS)
+        self._hear_out(reader)
         with self._told:
             self._over = True
         self._ended.set()
         self._on_end(self._code)
+
+    def _hear_out(self, reader: threading.Thread) -> None:
+        """Wait until what was written before the end is told, however slowly that is taken; not for
+        somebody who has escaped and holds the output open."""
+        swept = time.monotonic()
+        while reader.is_alive():
+            now = time.monotonic()
+            if now - max(swept, self._read_last) > _LAST_WORDS or now - swept > _LONGEST:
+                return
+            reader.join(_POLL)
 
     def _sweep(self) -> None:
         """End what the first process has left behind."""

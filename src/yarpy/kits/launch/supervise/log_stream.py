@@ -24,7 +24,7 @@ from yarpy.wire.message import Packet
 
 KEPT: Final = 10_000  # lines for loggers that are late
 _FORWARDS: Final = "YARP_FORWARD_LOG_ENABLE"
-_LAST_WORDS: Final = 1.0  # seconds in which the last lines leave
+_LAST_WORDS: Final = 5.0  # seconds in which the port opens, if it has not, and the last lines leave
 
 
 class LogStream:
@@ -51,7 +51,7 @@ class LogStream:
             self._sender.put([Packet([header, f"{line}\n"])])
 
     def close(self) -> None:
-        """Send what is left, for a moment."""
+        """Send what is left, for a while."""
         self._sender.close(_LAST_WORDS)
 
     def _gap(self, lost: int) -> Packet:
