@@ -106,6 +106,23 @@ def test_one_that_was_just_being_started_is_found_by_its_mark(state: StateFolder
     assert program.found_again(state, entry) is None
 
 
+def test_its_code_stays_though_somebody_else_asked_meanwhile(state: StateFolder) -> None:
+    """Who finds another thread at it is told nothing, which must not count."""
+    found = begin(state, "exit(3)")
+
+    class Child:
+        returncode: int | None = None
+
+        def poll(self) -> None:
+            found.code = 3  # as the other thread notes
+
+    assert found._child is not None
+    found._child.wait()
+    found._child = Child()  # type: ignore[assignment]
+    assert not found.reap() and found.code == 3
+    found.finish()
+
+
 def test_what_a_program_leaves_behind_counts(state: StateFolder) -> None:
     found = begin(state, "import os, time\nif os.fork() == 0: time.sleep(600)")
     wait_until(lambda: not found.reap())

@@ -4,6 +4,7 @@ import signal
 import struct
 import sys
 import threading
+from pathlib import Path
 
 import pytest
 from support.wait import HANG, wait_until
@@ -86,6 +87,20 @@ def test_no_zombies(node: RunClient) -> None:
     pids = [node.start("quick", ["true"]).pid for _ in range(5)]
     wait_until(lambda: not node.running())
     wait_until(lambda: all(process.look(pid) is None for pid in pids))
+
+
+def test_what_one_has_said_is_whole_as_soon_as_it_has_ended(
+    node: RunClient, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Also before the watch has looked again."""
+    monkeypatch.setattr("yarpy.kits.launch.run.server.PERIOD", HANG)
+    gate = tmp_path / "gate"
+    code = f"while [ ! -e {gate} ]; do sleep 0.01; done; echo one; printf two"
+    node.start("last", ["sh", "-c", code])
+    gate.touch()
+    wait_until(lambda: not node.is_running("last"))
+    assert node.output("last") == ["one", "two"]
+    assert node.output("last") == ["one", "two"]
 
 
 def test_as_many_as_the_limit_says(node: RunClient, monkeypatch: pytest.MonkeyPatch) -> None:

@@ -11,6 +11,7 @@ import os
 import shutil
 import subprocess
 import sys
+import threading
 import time
 from collections import deque
 from collections.abc import Mapping, Sequence
@@ -61,13 +62,18 @@ class Program:
         self._looked = 0.0
         self._orphaned = True  # whether somebody lived without the first process, the last time
         self._told = 0
+        self._finished = False
+        #: Of its output: held while lines are told, and by who forgets it until the last are.
+        self.telling = threading.RLock()
 
     def reap(self) -> bool:
         """Return whether the first process lives; one that has ended is no zombie any more."""
-        if self._child is not None:
-            self.code = self._child.poll()
-            return self.code is None
-        return self.process_tree.leads
+        if self._child is None:
+            return self.process_tree.leads
+        code = self._child.poll()
+        if code is not None:  # None is also for who asks while another thread does
+            self.code = code
+        return self.code is None
 
     @property
     def running(self) -> bool:
@@ -76,18 +82,22 @@ class Program:
 
     def look(self) -> bool:
         """Tell what came, and return whether there may be more at once."""
-        lines = self._output.read()
-        lost = self._output.lost
-        if lost > self._told:
-            lines.insert(0, _lost(lost - self._told))
-            self._told = lost
-        self._tell(lines)
-        return bool(lines)
+        with self.telling:
+            if self._finished:
+                return False
+            lines = self._output.read()
+            lost = self._output.lost
+            if lost > self._told:
+                lines.insert(0, _lost(lost - self._told))
+                self._told = lost
+            self._tell(lines)
+            return bool(lines)
 
     def heard(self) -> list[str]:
         """Return what it said last, behind how much is missing of what it said."""
-        lost = self._output.lost
-        return [*([_lost(lost)] if lost else []), *self.kept]
+        with self.telling:
+            lost = self._output.lost
+            return [*([_lost(lost)] if lost else []), *self.kept]
 
     def ended(self) -> bool:
         """Return whether nobody lives, as seldom as is soon enough."""
@@ -102,10 +112,12 @@ class Program:
 
     def finish(self) -> None:
         """Tell the rest of a program that has ended, and forget it."""
-        while self.look():
-            pass
-        self._tell(self._output.read(whole=True))
-        self.leave()
+        with self.telling:
+            while self.look():
+                pass
+            self._tell(self._output.read(whole=True))
+            self.leave()
+            self._finished = True
         self._state.remove(self.entry.id)
 
     def leave(self) -> None:

@@ -11,10 +11,12 @@ from __future__ import annotations
 
 import os
 import sys
+import threading
+import time
 from collections.abc import Callable, Sequence
 from contextlib import suppress
 from functools import partial
-from typing import Final
+from typing import Any, Final
 
 from yarpy.data.bottle import Bottle
 from yarpy.data.text import plain_text
@@ -23,12 +25,16 @@ from yarpy.link.begin.admission import Gate
 from yarpy.log import logger
 from yarpy.names.base import NameClient
 from yarpy.port.assembly import open_hub
+from yarpy.port.connection import ConnectionEvent
+from yarpy.port.hub import Hub
 from yarpy.port.keep.log_sender import LogSender
 from yarpy.port.rpc import RpcServer
 from yarpy.wire.message import Message, Packet
 
 KEPT: Final = 10_000  # lines for loggers that are late
 SHOWN: Final = 1000  # ... and for terminals
+OPENING: Final = 5.0  # seconds for the port that a terminal is told of
+ATTACHING: Final = 5.0  # seconds for a terminal to come to a program that ended at once
 
 log = logger("yarpy.run")
 
@@ -59,7 +65,8 @@ class LogRelay:
 
 
 class TerminalRelay:
-    """The ports of a terminal. feed: a descriptor to write to, which it closes; gate: who may."""
+    """The ports of a terminal: there when it is made, and a while longer than the program if none
+    has come yet. feed: a descriptor to write to, which it closes; gate: who may."""
 
     def __init__(
         self, uuid: str, feed: int, gate: Callable[[str], Gate], names: NameClient | None
@@ -67,27 +74,52 @@ class TerminalRelay:
         if sys.platform != "win32":  # where `program.open_input` has none
             os.set_blocking(feed, False)
         self._feed = feed
-        self._sender = LogSender(
-            partial(open_hub, names=names, gate=gate), f"{uuid}/stdout", _gap, "", SHOWN
-        )
+        self._names, self._gate = names, gate
+        self._opened, self._met = threading.Event(), threading.Event()
+        self._sender = LogSender(self._open, f"{uuid}/stdout", _gap, "", SHOWN)
         self._sender.open()
+        self._end = threading.Thread(target=self._leave, name=f"end of {uuid}", daemon=True)
+        self._ending = False
         try:
             self._input = RpcServer(f"{uuid}/stdin", self._write, names=names, gate=gate, lock=True)
         except BaseException:
             self._sender.close()
             os.close(feed)
             raise
+        self._opened.wait(OPENING)
 
     def hear(self, lines: Sequence[str]) -> None:
         self._sender.put([Packet(Bottle([f"{line}\n"])) for line in lines])
 
     def close(self) -> None:
+        if not self._ending:
+            self._ending = True
+            self._end.start()
+
+    def wait(self, seconds: float) -> None:
+        until = time.monotonic() + seconds
+        self._met.set()
+        self._end.join(max(seconds, 0.0))
+        self._sender.close(until - time.monotonic())
+
+    def _open(self, name: str, mailbox: Any, on_connection: Callable[[Any], object]) -> Hub:
+        """Open the port of what is said."""
+
+        def see(event: ConnectionEvent) -> None:
+            if event.created and not event.incoming:
+                self._met.set()
+            on_connection(event)
+
+        try:
+            return open_hub(name, mailbox, on_connection=see, names=self._names, gate=self._gate)
+        finally:
+            self._opened.set()
+
+    def _leave(self) -> None:
+        self._met.wait(ATTACHING)
         self._input.close()
         self._sender.close(0.0)
         os.close(self._feed)
-
-    def wait(self, seconds: float) -> None:
-        self._sender.close(seconds)
 
     def _write(self, message: Message) -> None:
         try:

@@ -174,12 +174,13 @@ class RunServer:
                 self._news.wait(PERIOD)
 
     def _forget(self, one: Program) -> None:
-        with self._lock:
-            if one not in self._programs:
-                return  # the watch and the end of the server have both seen that it is over
-            self._programs.remove(one)
-            self._last.append(one)
-        one.finish()
+        with one.telling:  # who asks what it has said waits for the rest of it
+            with self._lock:
+                if one not in self._programs:
+                    return  # two have seen that it is over
+                self._programs.remove(one)
+                self._last.append(one)
+            one.finish()
         code = "" if one.code is None else f" with {one.code}"
         log.info("%s: %s ended%s", self._name, one.entry.tag, code)
 
@@ -224,6 +225,9 @@ class RunServer:
                 runs = any(one.running for one in self._tagged(tag))
                 answer = Bottle(["running" if runs else "not running"])
                 if "output" in request:
+                    for one in self._tagged(tag):
+                        if not one.running:  # the watch has not seen it yet
+                            self._forget(one)
                     answer.append([line for one in self._heard(tag) for line in one.heard()])
                 elif "code" in request and not runs:
                     answer += self._code(tag)
