@@ -34,18 +34,19 @@ def command(program: str, name: str, count: int, follow: bool) -> int:
     from yarpy.kits.launch.console import control
     from yarpy.kits.launch.console.chosen import chosen
 
-    name, since, most = chosen(name), 0, count
+    name, since, most, begun = chosen(name), 0, max(count, 1), False
     while True:
         try:
             told = control.ask(name, do="logs", name=program, since=since, most=most)
         except LocalProtocolError:
-            if not since:
+            if not begun:
                 raise
             return 0  # it has ended
         for number, label, line in told["lines"]:
             since = number
-            print_line(readable(f"{line}" if program else f"{label} | {line}"))
+            if begun or count:
+                print_line(readable(f"{line}" if program else f"{label} | {line}"))
         if not follow:
             return 0
-        since, most = max(since, 1), _MOST
+        begun, most = True, _MOST
         time.sleep(_PERIOD)
