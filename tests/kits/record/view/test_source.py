@@ -1,13 +1,18 @@
 """Files as a page sees them."""
 
+import threading
+from collections.abc import Iterator
 from pathlib import Path
+from typing import Any
 
 import pytest
 from support.recordings import START, STEP, recorded
-from support.wait import wait_until
+from support.wait import HANG, wait_until
 
 from yarpy.errors import MissingFile
 from yarpy.kits.record.mcap.writer import McapWriter
+from yarpy.kits.record.recorded import Recorded
+from yarpy.kits.record.recording import Recording
 from yarpy.kits.record.view.source import FileSource
 
 
@@ -43,6 +48,27 @@ def test_marks_and_damage(tmp_path: Path) -> None:
         told = source.told()
         assert told["notes"] == [{"t": 0.05, "what": "mark", "text": "here"}]
         assert "x.mcap" in told["problem"]
+
+
+def test_it_is_not_all_there_before_its_damage_is_known(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Nor while messages of the last moment are missing: a page asks no more then."""
+    path = recorded(tmp_path / "x.mcap", 100)
+    between = Recording.between
+    looked, go = threading.Event(), threading.Event()
+
+    def slow(recording: Recording, *words: Any) -> Iterator[Recorded]:
+        yield from between(recording, *words)
+        looked.set()
+        assert go.wait(HANG)
+
+    monkeypatch.setattr(Recording, "between", slow)
+    with FileSource([path]) as source:
+        assert looked.wait(HANG)
+        assert source.told()["seen"] < 1
+        go.set()
+        wait_until(lambda: source.told()["seen"] == 1)
 
 
 def test_no_file(tmp_path: Path) -> None:

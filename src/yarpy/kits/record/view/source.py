@@ -21,6 +21,7 @@ from yarpy.kits.record.recording import Recording, open_recording
 from yarpy.kits.record.view.overview import SECOND, Overview
 
 SHOWN_NOTES: Final = 1000
+_NEARLY: Final = 0.999  # of the time line, as it is told: who is told 1 asks no more
 
 
 class Source(Protocol):
@@ -146,7 +147,8 @@ class FileSource:
             with self.open() as recording:
                 for recorded in recording.between([*self.kinds]):
                     overview.add(recorded.port, recorded.received_ns)
-                    self.seen = (recorded.received_ns - self.begin) / (self.end - self.begin)
+                    share = (recorded.received_ns - self.begin) / (self.end - self.begin)
+                    self.seen = min(share, _NEARLY)
                     if self._closing.is_set():
                         return
                 self.problem = "; ".join(recording.damages[:10])
@@ -170,11 +172,12 @@ class FileSource:
 
     def told(self) -> dict[str, Any]:
         """Return what the time line of a page shows."""
+        seen = self.seen  # before the rest, which is all there if it is 1
         found = timeline(self, self._overview, self._counts, self._notes)
         attached = [{"name": name, "size": size} for name, size in self._attached.items()]
         return {
             **found,
-            "seen": round(self.seen, 3),
+            "seen": round(seen, 3),
             "problem": self.problem,
             "attached": attached[:SHOWN_NOTES],
         }
