@@ -6,10 +6,12 @@ from typing import Annotated
 
 import numpy as np
 import pytest
+from support.system import NO_MARKS
 from support.wait import HANG, wait_until
 
 import yarpy
 from yarpy.kits import wrap
+from yarpy.kits.wrap import yarp as module
 from yarpy.kits.wrap.value.tree import to_text
 
 Picture = Annotated[np.ndarray, wrap.Image("bgr")]
@@ -62,6 +64,17 @@ def test_priorities_reach_the_connections() -> None:
         wait_until(lambda: handle.stats[0]["inputs"])
         here.state()
         assert there.state(timeout=HANG) == {"open": True}
+
+
+@pytest.mark.skipif(bool(NO_MARKS), reason=NO_MARKS)
+def test_who_connects_as_soon_as_a_topic_has_its_name_has_the_priority_too() -> None:
+    with (
+        yarpy.BufferedPort("/eye/state") as port,
+        yarpy.Port("/view", callback=lambda message: None),
+    ):
+        port.connect("/view")
+        module._give(port, yarpy.Qos(packets="HIGH"))
+        assert port.outputs[0].qos.packets == "AF42"
 
 
 def test_netcat_may_ask() -> None:

@@ -79,13 +79,17 @@ class Yarp:
 def _give(port: BufferedPort, qos: Qos) -> None:
     """Let every connection out of `port` have this priority."""
 
+    def give(target: str = "") -> None:
+        for connection in port.outputs:
+            if target in ("", connection.target):
+                connection.qos = qos
+
     def on_connection(event: ConnectionEvent) -> None:
         if event.created and not event.incoming:
-            for connection in port.outputs:
-                if connection.target == event.target:
-                    connection.qos = qos
+            give(event.target)
 
     port.on_connection(on_connection)
+    give()  # to those that came as soon as it had its name
 
 
 class PortPublisher(PortEnd):
