@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import pytest
+from support.wait import HANG
 
 import yarpy
 from yarpy.cli import completion
@@ -56,6 +57,7 @@ def test_what_it_is_stands_beside_it():
 
 
 def test_names_of_ports(server, names, here, monkeypatch):
+    monkeypatch.setattr(completion, "TIMEOUT", HANG)
     with yarpy.Port("/tab/rpc:i", names=names), yarpy.Port("/tab/out", names=names) as out:
         names.register("/tab/$(odd)", "tcp", "127.0.0.1", out.contact.port)
         said = here("completion", "--line", "yarpy connect /tab/")

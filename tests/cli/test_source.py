@@ -61,8 +61,9 @@ def test_it_is_waited_for_and_comes_back_however_late(listener, monkeypatch):
             wait_until(lambda: lines[-1] == "" and out.outputs)
             out.write([number])
             assert listener.read(timeout=HANG).value == [number]
+            wait_until(lambda: not found._wanted)  # it knows that it is connected
         wait_until(lambda: not found.connected)
-        time.sleep(2 * source.PAUSE)  # it has been seen to be gone
+        wait_until(lambda: found._wanted)  # it has been seen to be gone
 
 
 def test_who_disconnects_them_means_it(listener):

@@ -12,7 +12,7 @@ from pathlib import Path
 import pytest
 from support import fork_server
 from support.process import Process
-from support.wait import HANG
+from support.wait import HANG, wait_until
 
 import yarpy
 
@@ -145,12 +145,11 @@ def test_talker_and_listener(server: yarpy.NameServer):
 
 
 def test_talker_and_listener_end_by_themselves(server: yarpy.NameServer):
-    with (
-        start("talker.py", "10", **server.environment) as talker,
-        start("listener.py", "2", **server.environment) as listener,
-    ):
-        assert listener.wait() == 0, listener.stderr
-        assert talker.wait() == 0, talker.stderr
+    with start("listener.py", "2", **server.environment) as listener:
+        assert yarpy.wait_for("/listener", timeout=HANG)  # it waits for the talker now
+        with start("talker.py", "10", **server.environment) as talker:
+            assert listener.wait() == 0, listener.stderr
+            assert talker.wait() == 0, talker.stderr
         assert len(listener.stdout.splitlines()) == 2
 
 
@@ -171,7 +170,7 @@ def test_module(server: yarpy.NameServer):
     with start("module.py", "--name", "/tock", "--rate", "50", **server.environment) as module:
         assert yarpy.wait_for("/tock/quit", timeout=HANG)
         with yarpy.RpcClient("/tock/rpc") as client:
-            assert client.call("count")[0] > 0
+            wait_until(lambda: client.call("count")[0] > 0)
             assert client.call("rate", 100) == ["ok"]
             assert client.call("rate", 0)[0] == "fail"
         interrupt(module)

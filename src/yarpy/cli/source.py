@@ -73,8 +73,10 @@ class Source:
         return any(link.source.rstrip("/") == name for link in self._port.inputs)
 
     def _follow(self) -> None:
-        while not self._port.closed:
+        while True:
             threading.Event().wait(PAUSE)
+            if self._port.closed:
+                return
             try:
                 self._look()
             except yarpy.YarpError as error:

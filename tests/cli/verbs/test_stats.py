@@ -33,7 +33,9 @@ def source(names):
 
 
 def test_each_second_and_the_total(cli, source):
+    started = time.monotonic()
     said = cli.run("stats", "/stats/source", "--duration", "1.5")
+    most = (time.monotonic() - started) / 0.02 + 1
     assert said.returncode == 0
     lines = said.stdout.splitlines()
     assert len(lines) == 3
@@ -44,9 +46,9 @@ def test_each_second_and_the_total(cli, source):
         lines[2],
     )
     assert match is not None
-    assert 20 < int(match[2]) < 90
+    assert 0 < int(match[2]) <= most
     assert abs(float(match[1]) - int(match[2]) * 128e-6) / float(match[1]) < 0.15
-    assert 0.015 < float(match[3]) < 0.08
+    assert float(match[3]) * int(match[2]) > 1.49
 
 
 def test_a_wait_that_ends_a_moment_early_is_no_second(capsys: pytest.CaptureFixture[str]) -> None:
@@ -73,8 +75,8 @@ def test_until_interrupted(cli, source, words):
 def test_json(cli, source):
     said = cli.run("stats", "/stats/source", "--duration", "0.5", "--json")
     seconds, total = map(json.loads, said.stdout.splitlines())
-    assert seconds["messages"] == total["total"]["messages"] > 5
-    assert total["total"]["bytes"] > 500
+    assert seconds["messages"] == total["total"]["messages"] > 0
+    assert total["total"]["bytes"] > 100 * total["total"]["messages"]
 
 
 def test_nobody(here):

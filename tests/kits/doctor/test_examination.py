@@ -35,6 +35,7 @@ def world(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[World]:
     monkeypatch.setenv("YARP_CONFIG_HOME", str(tmp_path))
     monkeypatch.setenv("YARP_PORT_RANGE", str(free_port()))
     monkeypatch.setattr("yarpy.kits.doctor.case.TIMEOUT", HANG)
+    monkeypatch.setattr("yarpy.kits.doctor.name.TIMEOUT", 5.0)
     server = yarpy.NameServer()
     try:
         (tmp_path / "yarp.conf").write_text(f"127.0.0.1 {server.port} yarp\n")

@@ -122,6 +122,7 @@ def test_server_that_comes_late_is_waited_for() -> None:
     with wrap.call(there.add):
         threading.Timer(0.1, lambda: opened.append(wrap.serve(here.add))).start()
         assert there.add(1, timeout=HANG) == 3
+        wait_until(lambda: opened)  # it answers before it is told that it does
     opened[0].close()
 
 

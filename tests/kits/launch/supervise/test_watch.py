@@ -63,7 +63,7 @@ def running(
 
 def test_a_script_that_changes_starts_again_and_nothing_else(running: Running) -> None:
     before = running.pids()
-    running.change(running.script, sleeping(601))
+    running.change(running.script, sleeping(6001))  # of another size
     assert running.news == ["starts again: run.py has changed"]
     wait_until(lambda: running.pids()["script"] != before["script"])
     running.settle()

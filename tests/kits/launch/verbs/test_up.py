@@ -154,6 +154,7 @@ def test_a_second_interrupt_kills(cli) -> None:
     path = write(cli, f'[programs.deaf]\ncommand = ["sh", "-c", "{deaf}"]\n')
     with cli.start("up", path, "--grace", "600") as up:
         up.wait_line(r"deaf \| ready")
+        up.wait_line(r"\* deaf running")
         (told,) = status(cli)["programs"]
         up.signal(signal.SIGINT)
         up.wait_line(r"\* deaf stopping")
@@ -170,6 +171,7 @@ def test_programs_at_a_server_that_stands_still_for_a_while(cli) -> None:
         node.wait_line("/up/node starts programs")
         with cli.start("up", path) as up:
             up.wait_line(r"far \| hello")
+            up.wait_line(r"\* far running")  # it speaks before `up` knows that it has begun
             (told,) = status(cli)["programs"]
             assert told["host"] == "/up/node" and told["state"] == "running"
             node.signal(signal.SIGSTOP)
