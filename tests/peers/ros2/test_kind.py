@@ -62,6 +62,14 @@ def test_what_the_graph_says() -> None:
         learned([token("p::msg::dds_::T_", hash_of(String))], "msg", nobody)
 
 
+def test_who_says_no_version_is_not_taken_for_one_of_jazzy() -> None:
+    with pytest.raises(UnknownType, match=r"add ~turtlesim/msg/Pose to the target"):
+        learned([token("turtlesim::msg::dds_::Pose_", NO_HASH)], "msg", nobody)
+    with pytest.raises(UnknownType) as unknown:
+        learned([token("p::msg::dds_::T_", NO_HASH)], "msg", nobody)
+    assert "to the target" not in str(unknown.value)
+
+
 def test_of_a_flood_of_unknown_types_few_nodes_are_asked() -> None:
     asked: list[Token] = []
 

@@ -67,7 +67,7 @@ def learned(
             if found != kind:
                 continue
             if key.hash == NO_HASH:
-                return _load(humble(), name, kind), key
+                return _unversioned(name, kind), key
             if is_hash(key.hash):
                 try:
                     return default_library().having(name, key.hash, kind), key
@@ -81,6 +81,21 @@ def learned(
     if problem is not None:
         raise problem
     return None
+
+
+def _unversioned(name: str, kind: str) -> Any:
+    """The type of a peer that does not say which version it has: that of Humble."""
+    try:
+        return _load(humble(), name, kind)
+    except UnknownType as error:
+        try:
+            _load(default_library(), name, kind)
+        except UnknownType:
+            raise error from None
+        raise UnknownType(
+            f"{error}. The other side says no type hash, as nodes of Humble: if it means the "
+            f"definition that is known here, add ~{full_name(name, kind)} to the target"
+        ) from error
 
 
 def _asked(

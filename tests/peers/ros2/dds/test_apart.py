@@ -11,7 +11,10 @@ from support.wait import wait_until
 
 import yarpy
 from yarpy.peers import ros2
+from yarpy.peers.ros2.dds.apart import apart
+from yarpy.peers.ros2.dds.status import TYPE as CONSISTENCY
 from yarpy.peers.ros2.event import Event
+from yarpy.peers.ros2.token import SUBSCRIBER
 
 TYPE = "std_msgs/msg/String"
 GROWING = {"type": "Growing"}
@@ -62,21 +65,27 @@ def test_who_takes_the_second_way_of_writing_alone_is_named(
 def test_who_fits_is_heard_and_not_named(
     peer: Peer, own: str, caplog: pytest.LogCaptureFixture
 ) -> None:
-    """Beside one who does not, who is told of once; and a program hears of it, too."""
+    """Nor is one of our type that asks for more than we promise. Two of one program are told of
+    once, and our program hears of them, too."""
     events: list[Event] = []
     caplog.set_level(logging.WARNING, logger="yarpy")
+    name = f"{own}/x"
     with Peer() as fitting, ros2.Node(own, rmw="dds") as node:  # a program has one type at a topic
-        writer = node.publisher(f"{own}/x", TYPE, on_event=events.append)
-        fitting.do("reader", f"{own}good", f"{own}/x", "reliable", "volatile", 10)
-        peer.do("reader", f"{own}bad", f"{own}/x", "reliable", "volatile", 10, GROWING)
-        peer.do("reader", f"{own}worse", f"{own}/x", "reliable", "volatile", 10, GROWING)
-        wait_until(lambda: sum(event.times for event in events) == 2)
-        assert {(event.kind, event.policy) for event in events} == {
-            ("incompatible_qos", "type_consistency")
-        }
+        writer = node.publisher(name, TYPE, qos=ros2.qos_profile(), on_event=events.append)
+        fitting.do("reader", f"{own}good", name, "reliable", "volatile", 10)
+        fitting.do("reader", f"{own}more", name, "reliable", "transient_local", 10)
+        wait_until(lambda: events)
+        peer.do("reader", f"{own}bad", name, "reliable", "volatile", 10, GROWING)
+        peer.do("reader", f"{own}worse", name, "reliable", "volatile", 10, GROWING)
+        wait_until(lambda: sum(event.times for event in events) == 3)
+        assert {event.policy for event in events} == {"durability", "type_consistency"}
         wait_until(lambda: writer.subscribers == 1)
         writer.write("hi")
         wait_until(lambda: fitting.heard(f"{own}good") == ["hi"])
         assert len(told(caplog)) == 1
-    for name in ("bad", "worse"):
-        peer.do("close", f"{own}{name}")
+        part, entity = writer._part, writer._entity
+        found = [*apart(CONSISTENCY, part, entity, writer._class, writer._key, SUBSCRIBER)]
+        assert len(found) == 2
+        assert len({token.zid for token in found}) == 1
+    for each in ("bad", "worse"):
+        peer.do("close", f"{own}{each}")
