@@ -131,6 +131,12 @@ GET = pair(
 )
 
 
+def knows_all(writer: Any, reader: Any) -> bool:
+    """Whether a server knows where answers go to, for all who ask it: as rmw_cyclonedds_cpp it
+    waits for that."""
+    return len(writer.get_matched_subscriptions()) >= len(reader.get_matched_publications())
+
+
 class Node:
     def __init__(self) -> None:
         self.part = DomainParticipant(0, qos=Qos(Policy.Userdata(b"enclave=/;")))
@@ -181,6 +187,9 @@ class Node:
                 if not isinstance(sample, ADD[0]):
                     continue  # somebody has gone
                 answer = ADD[1](guid=sample.guid, seq=sample.seq, sum=sample.a + sample.b)
+                until = time.monotonic() + WAIT
+                while not knows_all(writer, reader) and time.monotonic() < until:
+                    time.sleep(0.005)
                 writer.write(answer)
         time.sleep(0.005)
 
@@ -220,7 +229,7 @@ class Node:
             node = NodeInfo(words[0], words[1], [], [Gid(list(self.clock.guid.bytes))])
             self.tells.write(Info(ours, [node]))
         elif verb == "rosout":
-            return [[item.level, item.name, item.msg] for item in self.logs.read(N=1000)]
+            return [[item.level, item.name, item.msg] for item in self.logs.read(N=100_000)]
         elif verb == "clock":
             self.clock.write(Clock(Time(words[0], 0)))
         return None

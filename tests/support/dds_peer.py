@@ -26,7 +26,15 @@ from dataclasses import dataclass
 from typing import Any
 
 from cyclonedds import builtin
-from cyclonedds.core import DDSException, InstanceState, Policy, Qos
+from cyclonedds.core import (
+    DDSException,
+    InstanceState,
+    Policy,
+    Qos,
+    ReadCondition,
+    SampleState,
+    ViewState,
+)
 from cyclonedds.domain import DomainParticipant
 from cyclonedds.idl import IdlStruct
 from cyclonedds.idl.annotations import appendable
@@ -37,6 +45,7 @@ from cyclonedds.topic import Topic
 from cyclonedds.util import duration
 
 RELIABLE = Policy.Reliability.Reliable(duration(milliseconds=100))
+MOST = 100_000  # readers of all programs
 
 
 @dataclass
@@ -110,6 +119,8 @@ def events_of(item: Any) -> dict[str, int]:
 def obey() -> None:
     part = DomainParticipant(int(os.environ.get("ROS_DOMAIN_ID", "0")))
     seen = builtin.BuiltinDataReader(part, builtin.BuiltinTopicDcpsSubscription)
+    gone = InstanceState.NotAliveDisposed | InstanceState.NotAliveNoWriters
+    gone = ReadCondition(seen, SampleState.Any | ViewState.Any | gone)
     held: dict[str, Any] = {}
     topics: dict[tuple[str, Any], Any] = {}
     lock = threading.Lock()
@@ -148,7 +159,8 @@ def obey() -> None:
             elif verb == "events":
                 answer.append(events_of(held[name]))
             elif verb == "readers":
-                for sample in seen.read(N=1000):
+                seen.take(N=MOST, condition=gone)  # else those of all tests until now are kept
+                for sample in seen.read(N=MOST):
                     alive = sample.sample_info.instance_state == InstanceState.Alive
                     if alive and getattr(sample, "topic_name", "") == f"rt{name}":
                         text = " ".join(map(str, sample.qos))

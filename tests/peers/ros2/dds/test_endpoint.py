@@ -6,12 +6,15 @@ from __future__ import annotations
 import contextlib
 import itertools
 import threading
+import time
 
 import pytest
 from support.dds_program import Peer
-from support.wait import HANG, wait_until
+from support.lasted import lasted
+from support.wait import HANG, inside, wait_until
 
 import yarpy
+from yarpy.peers.ros2.dds import endpoint as module
 from yarpy.peers.ros2.dds.endpoint import DdsPublisher
 
 RELIABILITY = ("reliable", "best_effort")
@@ -30,12 +33,14 @@ def read_all(reader: yarpy.BufferedPort, until: str) -> list[str]:
 
 
 def say_until_read(peer: Peer, name: str, reader: yarpy.BufferedPort) -> None:
-    """Write until the port hears that writer; what it hears of others meanwhile is thrown away."""
-    for number in itertools.count():
-        assert number < 20 * HANG, f"nothing of {name} came"
-        peer.do("write", name, f"{name} {number}")
+    """Write until the port has heard what was written last, so that nothing of that writer is on
+    its way any more; what is heard of others meanwhile is thrown away."""
+    for count in itertools.count():
+        assert count < 20 * HANG, f"nothing of {name} came"
+        text = f"{name} {next(_numbers)}"
+        peer.do("write", name, text)
         try:
-            while not str(reader.read(timeout=0.05).value).startswith(name):
+            while reader.read(timeout=0.05).value != text:
                 pass
             return
         except yarpy.Timeout:
@@ -71,7 +76,7 @@ def test_a_subscriber_hears_any_publisher(
         peer.do("writer", name, topic, reliability, durability, 5)
         peer.do("write", name, *(f"before {number}" for number in range(8)))
         if order == "yarpy last":
-            reader.listen_to(target)
+            reader.listen_to(target, timeout=HANG)
         if durability == "transient_local" and reliability == "reliable":
             found = read_all(reader, "before 7")
             assert found[-5:] == [f"before {number}" for number in range(3, 8)]
@@ -80,6 +85,33 @@ def test_a_subscriber_hears_any_publisher(
         wait_until(lambda: peer.do("readers", topic) == [[reliability, durability]])
     wait_until(lambda: peer.do("readers", topic) == [], what="a closed port reads no longer")
     peer.do("close", name)
+
+
+def test_a_publisher_that_is_found_late(
+    peer: Peer, topic: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """DDS finds others by and by: who names no type waits for as long as the program says."""
+    monkeypatch.setattr(module, "TIMEOUT", 0.0)
+    name = f"w{topic}"
+
+    def come() -> None:
+        peer.do("writer", name, topic, "reliable", "volatile", 10)
+
+    with yarpy.BufferedPort("/in", strict=True) as reader:
+        coming = inside("DdsEndpoint.begin", come)
+        reader.listen_to(f"ros2+dds:/{topic}", timeout=HANG)
+        coming.join(HANG)
+        say_until_read(peer, name, reader)
+    peer.do("close", name)
+
+
+def test_a_port_that_is_closed_looks_for_nobody(here: None, topic: str) -> None:
+    with yarpy.BufferedPort("/in") as reader:
+        closing, begun = inside("DdsEndpoint.begin", reader.close), time.monotonic()
+        with pytest.raises(yarpy.PortClosed):
+            reader.listen_to(f"ros2+dds:/{topic}", timeout=HANG)
+        assert lasted(begun) < HANG / 2
+        closing.join(HANG)
 
 
 @pytest.mark.parametrize("qos", ["", "+qos.latched"])
@@ -149,17 +181,43 @@ def test_publishers_of_both_kinds_are_heard(peer: Peer, topic: str, first: str) 
     one, two = f"one{topic}", f"two{topic}"
     peer.do("writer", one, topic, first, "volatile", 10)
     with yarpy.BufferedPort("/in", strict=True) as reader:
-        reader.listen_to(f"ros2+dds:/{topic}")
+        reader.listen_to(f"ros2+dds:/{topic}", timeout=HANG)
         say_until_read(peer, one, reader)
         peer.do("writer", two, topic, second, "volatile", 10)
         say_until_read(peer, two, reader)
         say_until_read(peer, one, reader)
         wait_until(lambda: peer.do("readers", topic) == [["best_effort", "volatile"]])
         peer.do("close", one if first == "best_effort" else two)
-        wait_until(lambda: peer.do("readers", topic) == [["reliable", "volatile"]])
         left = two if first == "best_effort" else one
+
+        def is_changed() -> bool:
+            peer.do("write", left, "meanwhile")
+            return peer.do("readers", topic) == [["reliable", "volatile"]]
+
+        wait_until(is_changed)
         say_until_read(peer, left, reader)
         peer.do("close", left)
+
+
+def test_a_reader_stays_until_its_successor_is_known(
+    peer: Peer, topic: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Publishers hear of it some time later, and what they send until then would be lost."""
+    monkeypatch.setattr(module, "CHANGING", 0.0)
+    steady, other = f"steady{topic}", f"other{topic}"
+    before, after = ["reliable", "volatile"], ["best_effort", "volatile"]
+    peer.do("writer", steady, topic, "reliable", "volatile", 10)
+    with yarpy.BufferedPort("/in", strict=True) as reader:
+        reader.listen_to(f"ros2+dds:/{topic}", timeout=HANG)
+        say_until_read(peer, steady, reader)
+        peer.do("writer", other, topic, "best_effort", "volatile", 10)
+        wait_until(lambda: after in peer.do("readers", topic))
+        say_until_read(peer, other, reader)
+        assert sorted(peer.do("readers", topic)) == [after, before]  # type: ignore[type-var]
+        say_until_read(peer, steady, reader)
+        wait_until(lambda: peer.do("readers", topic) == [after])
+    for name in (steady, other):
+        peer.do("close", name)
 
 
 def test_nothing_comes_twice_where_a_reader_takes_over(peer: Peer, topic: str) -> None:
@@ -168,10 +226,8 @@ def test_nothing_comes_twice_where_a_reader_takes_over(peer: Peer, topic: str) -
     peer.do("writer", steady, topic, "reliable", "transient_local", 0)
     count = 0
     with yarpy.BufferedPort("/in", strict=True) as reader:
-        reader.listen_to(f"ros2+dds+qos.default:/{topic}{TYPE}")  # only to see when it is there
-        say_until_read(peer, steady, reader)
-    with yarpy.BufferedPort("/in", strict=True) as reader:
         reader.listen_to(f"ros2+dds:/{topic}{TYPE}")
+        say_until_read(peer, steady, reader)
         for _ in range(3):
             for wanted in ("best_effort", "reliable"):
                 if wanted == "best_effort":
@@ -216,7 +272,7 @@ def test_bursts_come_whole(peer: Peer, topic: str) -> None:
     name = f"w{topic}"
     peer.do("writer", name, topic, "reliable", "volatile", 1)
     with yarpy.BufferedPort("/in", strict=True) as reader:
-        reader.listen_to(f"ros2+dds:/{topic}")
+        reader.listen_to(f"ros2+dds:/{topic}", timeout=HANG)
         say_until_read(peer, name, reader)
         peer.do("close", name)
         peer.do("writer", name, topic, "reliable", "volatile", 10)
@@ -243,7 +299,7 @@ def test_what_a_slow_reader_misses_is_counted(peer: Peer, topic: str) -> None:
 
     peer.do("writer", name, topic, "reliable", "volatile", 0)
     with yarpy.Port("/in", callback=hear) as port:
-        port.listen_to(f"ros2+dds:/{topic}")
+        port.listen_to(f"ros2+dds:/{topic}", timeout=HANG)
         for _ in range(int(20 * HANG)):
             peer.do("write", name, "hold")
             if held.wait(0.05):

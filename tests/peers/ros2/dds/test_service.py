@@ -51,7 +51,11 @@ def test_a_port_is_asked(node_peer: Any, own: str) -> None:
 
 def test_a_port_asks(node_peer: Any, own: str) -> None:
     node_peer.do("serve", own)
-    with yarpy.RpcClient(f"ros2+dds:/{own}~{ADD}", name=f"{own}/asker") as client:
+    with (
+        ros2.Node(f"{own}_looks", rmw="dds") as node,  # once it is found, the port finds it
+        yarpy.RpcClient(f"ros2+dds:/{own}~{ADD}", name=f"{own}/asker") as client,
+    ):
+        assert node.client(own, ADD).wait(HANG)
         assert client.ask([5, 37]).ros.sum == 42  # type: ignore[union-attr, attr-defined]
         assert client.ask([1, 2]).ros.sum == 3  # type: ignore[union-attr, attr-defined]
 

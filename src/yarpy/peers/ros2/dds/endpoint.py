@@ -5,18 +5,21 @@ subscriber asks for what all publishers promise, looked at again when one comes 
 publisher promises what anybody asks for; where one is said, the log names whom it keeps out, and
 so it does where a type is another one. What comes faster than it is read is counted, and so is what
 the network loses. Who comes and goes is told by the participant's `pump`: a message costs no look
-at that.
+at that. A subscriber whose type nobody has said waits for a publisher as long as the call under way
+may take: others are found by and by.
 """
 
 from __future__ import annotations
 
 import contextlib
+import math
 import threading
 import time
 from collections import deque
 from collections.abc import Callable
 from typing import Any, Final
 
+from yarpy import scope
 from yarpy.errors import LocalProtocolError, UnknownName, UnknownType
 from yarpy.log import logger
 from yarpy.peers.ros2 import kind as kinds
@@ -36,11 +39,11 @@ from yarpy.transports.inbox import Inbox
 
 log = logger("yarpy.ros2")
 
-TIMEOUT: Final = 2.0  # seconds for others to be found
+TIMEOUT: Final = 2.0  # seconds for others to be found, where nobody says more
 _LONG: Final = 10.0  # seconds of each wait that has no end
 ROOM: Final = 100  # messages that the library keeps until they are taken, and counted
 CHANGING: Final = 1.0  # seconds for others to hear of a new writer or reader
-REPEATED: Final = 10.0  # seconds in which a new reader may hear something once more
+REPEATED: Final = 10.0  # seconds in which a new reader may hear something once more, or nothing yet
 MOST_PUBLISHERS: Final = 1000  # whose last message is known
 
 
@@ -71,10 +74,13 @@ class DdsEndpoint(Inbox):
         self._opening = threading.RLock()
 
     def begin(self, type_: str) -> None:
-        """Find out about the type, and join. Raises UnknownName, UnknownType, DecodeError."""
-        deadline = time.monotonic() + (0.0 if type_ else TIMEOUT)
+        """Find out about the type, and join. Raises UnknownName, UnknownType, DecodeError,
+        PortClosed."""
+        left = scope.remaining() if self.role == SUBSCRIBER else math.inf
+        patience = 0.0 if type_ else TIMEOUT if left == math.inf else left
+        deadline = time.monotonic() + patience
         while not (seen := self._part.seen(self.name, self._peers)) and time.monotonic() < deadline:
-            time.sleep(0.05)
+            scope.sleep(0.05)
         with self._opening:
             if type_:
                 self._open(kinds.named(type_, kinds.MESSAGE, seen))
@@ -266,6 +272,7 @@ class DdsSubscriber(DdsEndpoint):
         self._conditions: dict[int, Any] = {}  # that something has come, by the reader's id
         self._before: Any = None  # the reader that another has taken over from, for a moment
         self._due = 0.0  # ... and until when
+        self._heard: set[int] = set()  # publishers of which the present one has heard
         self._repeats = False  # whether the present one may hear what the other one had
         self._last: dict[int, int] = {}  # when each publisher sent its last message, by its handle
 
@@ -349,6 +356,7 @@ class DdsSubscriber(DdsEndpoint):
             self._before, self._entity = self._entity, self._show(self._made())
             self._owned = (self._entity, *self._owned)
             self._listen(self._entity)
+            self._heard.clear()
             self._due, self._repeats = time.monotonic() + CHANGING, True
 
     def _retire(self) -> None:
@@ -365,7 +373,7 @@ class DdsSubscriber(DdsEndpoint):
         if self._before is not None:
             self._take(self._before)
         self._take(self._entity)
-        if self._before is not None and time.monotonic() >= self._due:
+        if self._before is not None and self._has_taken_over():
             with self._opening:
                 if not self._over:
                     self._retire()
@@ -375,6 +383,16 @@ class DdsSubscriber(DdsEndpoint):
             with self._counting:  # the network's losses are counted in another thread
                 self.dropped += 1
 
+    def _has_taken_over(self) -> bool:
+        """Return whether the reader before may go: its publishers know the present one, which has
+        heard of each of them, or have had time enough."""
+        now = time.monotonic()
+        if now < self._due:
+            return False
+        return now >= self._due + REPEATED or self._heard.issuperset(
+            self._before.get_matched_publications()
+        )
+
     def _take(self, reader: Any) -> None:
         for sample in reader.take(N=ROOM):
             body = getattr(sample, "body", None)
@@ -382,10 +400,12 @@ class DdsSubscriber(DdsEndpoint):
                 continue
             who = sample.sample_info.publication_handle
             when = int(sample.sample_info.source_timestamp)
+            if self._before is not None and reader is self._entity:
+                self._heard.add(who)
             if self._repeats:
                 if when <= self._last.get(who, -1):
                     continue  # the reader before had it
-                self._repeats = time.monotonic() < self._due + REPEATED
+                self._repeats = self._before is not None or time.monotonic() < self._due + REPEATED
             if who in self._last or len(self._last) < MOST_PUBLISHERS:
                 self._last[who] = when
             self._come.append(Incoming(body, 0, when))

@@ -33,7 +33,7 @@ from yarpy.peers.ros2.token import SUBSCRIBER
 
 ROOM: Final = 100  # questions or answers that the library keeps until they are taken
 FAST_DDS: Final = b"\x01\x0f"  # so begin the identities of its endpoints
-MEETING: Final = 0.5  # seconds for the reader of a client whose writer is known
+MEETING: Final = 2.0  # seconds for the reader of a client whose writer is known
 LOOK: Final = 0.005  # seconds between looks for it
 MOST_MET: Final = 1000  # writers of clients that are remembered
 

@@ -12,6 +12,7 @@ compared, and our log tells of other versions.
 
 from __future__ import annotations
 
+import threading
 from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
 from os import environ
@@ -79,6 +80,37 @@ def _fitting() -> Iterator[None]:
             environ[URI] = before
 
 
+class _Domains:
+    """The domains that we made ourselves, with how many of us are in each. The library refuses to
+    make one twice, and one of us may join while the last of before is leaving."""
+
+    def __init__(self) -> None:
+        self._held: dict[int, tuple[Any, int]] = {}
+        self._lock = threading.RLock()
+
+    def join(self, number: int, told: str) -> None:
+        """Be in a domain, which is made with these settings for the first of us."""
+        from cyclonedds.domain import Domain
+
+        with self._lock:
+            domain, count = self._held.get(number, (None, 0))
+            if domain is None:
+                domain = Domain(number, f"{FITTING},{told}")
+            self._held[number] = domain, count + 1
+
+    def leave(self, number: int) -> None:
+        """Be in it no longer; it ends with the last of us."""
+        with self._lock:
+            domain, count = self._held.pop(number)
+            if count > 1:
+                self._held[number] = domain, count - 1
+            else:
+                delete(domain)
+
+
+_DOMAINS: Final = _Domains()
+
+
 class Participant:
     """Our part in a domain, for all topics of this process."""
 
@@ -88,10 +120,10 @@ class Participant:
 
         self.number = domain
         self.users = 0
-        self._domain: Any = None
         told, who = settings(environ, listening_host())
+        self._made = bool(told)  # the domain is one that we make ourselves
         if told:
-            self._domain = domains.Domain(domain, f"{FITTING},{told}")
+            _DOMAINS.join(domain, told)
         qos = core.Qos(core.Policy.Userdata(b"enclave=/;"))
         try:
             with _fitting():
@@ -168,9 +200,9 @@ class Participant:
         return False
 
     def _leave_domain(self) -> None:
-        """Delete the domain, if we made it: the library refuses to make it twice."""
-        if self._domain is not None:
-            delete(self._domain)
+        """Leave the domain, if we made it."""
+        if self._made:
+            _DOMAINS.leave(self.number)
 
     def class_of(self, kind: Any, what: str = "msg") -> Any:
         """The class of the library for a type, which carries finished bytes; `what`: `srv` for the
