@@ -120,7 +120,7 @@ def test_a_slow_reader_of_ours_does_not_hold_them_up(peer: CppProgram) -> None:
             "time.time() - began"
         )
         assert took < 10
-        seen = []
+        seen = [port.read(timeout=HANG).value[0]]
         while True:
             try:
                 seen.append(port.read(timeout=0.3).value[0])
@@ -151,7 +151,8 @@ def test_callbacks(peer: CppProgram) -> None:
         "class Answer(yarp.BottleCallback):\n"
         "    def onRead(self, bottle, *rest):\n"
         "        reply = out.prepare(); reply.copy(bottle); reply.addString('seen')\n"
-        "        out.write(True)\n"
+        "        out.write(True); answered.append(1)\n"
+        "answered = []\n"
         "port, out = yarp.BufferedPortBottle(), yarp.BufferedPortBottle()\n"
         "assert port.open('/cpp/in') and out.open('/cpp/out')\n"
         "callback = Answer(); port.setStrict(); port.useCallback(callback)"
@@ -163,7 +164,7 @@ def test_callbacks(peer: CppProgram) -> None:
         source.connect("/cpp/in")
         yarpy.connect("/cpp/out", "/in")
         # The director needs Python over there to run now and then.
-        peer.begin("time.sleep(1)")
+        peer.begin("while len(answered) < 5: time.sleep(0.01)")
         for number in range(5):
             source.write([number])
             assert arrived.get(timeout=HANG).value == [number, "seen"]

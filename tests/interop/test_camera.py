@@ -362,9 +362,9 @@ def test_curl_watches() -> None:
         ) as process:
             assert process.stdout is not None
             assert port.wait_for_outputs(timeout=HANG)
-            for _ in range(3):
+            for count in range(3):  # one that is on its way is replaced by the next one
                 port.write(PICTURE)
-                time.sleep(0.05)
+                wait_until(lambda: port.outputs[0].stats.messages > count)  # noqa: B023
             data = jpeg.encode(PICTURE)
             head = b"--boundarydonotcross\r\nContent-Type: image/jpeg\r\nContent-Length: %d\r\n\r\n"
             whole = (head % len(data) + data + b"\r\n") * 3

@@ -105,7 +105,7 @@ def test_clean_leaves_the_living(network: CppYarp, cli: CommandLine) -> None:
     cli.run("name", "register", "/tool/dead", "tcp", "127.0.0.1", "1")
     with network.popen("read", "/tool/cpp"):
         assert cli.run("wait", "/tool/cpp").returncode == 0
-        said = cli.run("clean", "--timeout", "1")
+        said = cli.run("clean", "--timeout", "10")
         assert "* No response, removing port /tool/dead\n" in said.stdout
         assert said.stdout.count("removing") == 1
         assert cli.run("exists", "/tool/cpp").returncode == 0

@@ -38,8 +38,8 @@ def chain(network: CppYarp):
         process = host.__enter__()
         try:
             carriers = {"udp" if network.version < (4, 0) else "fast_tcp"}
-            assert {link.carrier for link in server._state_ext.outputs} == carriers
-            assert {link.carrier for link in server._command.inputs} == carriers
+            wait_until(lambda: {link.carrier for link in server._state_ext.outputs} == carriers)
+            wait_until(lambda: {link.carrier for link in server._command.inputs} == carriers)
             with ControlBoard("/cpp", carrier="udp", timeout=HANG) as board:
                 yield device, board
         except AssertionError:

@@ -112,7 +112,7 @@ def test_ports_register_again(cpp: CppYarp, server: CppYarp) -> None:
                 for name, address in addresses.items():
                     wait_until(lambda: yarpy.query(name) == address, what=name)  # noqa: B023
                 assert again.run("exists", "/a").returncode == 0
-                assert "yarp/vector" in again.run("name", "get", "/a", "type").stdout
+                wait_until(lambda: "yarp/vector" in again.run("name", "get", "/a", "type").stdout)
                 answer = again.run("rpc", "/b", input="x y\n")
                 assert answer.stdout == "Response: x y\n"
                 with CppProgram(again) as peer:

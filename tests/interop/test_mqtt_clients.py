@@ -128,15 +128,15 @@ def test_a_silent_port_stays_connected(
     added: str,
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
-    monkeypatch.setattr(mqtt_broker, "KEEP_ALIVE", 1)  # the broker hangs up after 1.5 s
-    often = replace(mqtt_broker.Client.limits, ping_interval=0.4)
+    monkeypatch.setattr(mqtt_broker, "KEEP_ALIVE", 2)  # the broker hangs up after 3 s
+    often = replace(mqtt_broker.Client.limits, ping_interval=0.5)
     monkeypatch.setattr(mqtt_broker.Client, "limits", often)
     reader.connect(broker.topic("x", f"+sub{added}"))
     out.connect(broker.topic("x", added))
     links = (*out._hub.outputs.links, *reader._hub.inputs.links)
-    for link in links:  # four seconds, on a machine with time to spare
-        before = link.driver.bytes_in
-        wait_until(lambda: link.driver.bytes_in >= before + 16)  # noqa: B023
+    before = [link.driver.bytes_in for link in links]
+    for link, had in zip(links, before, strict=True):  # four seconds, on a machine with time
+        wait_until(lambda: link.driver.bytes_in >= had + 16)  # noqa: B023
     assert (*out._hub.outputs.links, *reader._hub.inputs.links) == links
     out.write([1])
     assert reader.read(timeout=HANG).value == yarpy.Bottle([1])
@@ -268,7 +268,7 @@ def test_paho_reads_and_writes(out: yarpy.Port, reader: yarpy.BufferedPort) -> N
     for port in (out, reader):
         client = paho.Client(paho.CallbackAPIVersion.VERSION2, protocol=paho.MQTTv5)
         client.on_message = lambda client, data, message: heard.append(message.payload)
-        client.connect("127.0.0.1", port.contact.port, keepalive=1)
+        client.connect("127.0.0.1", port.contact.port, keepalive=2)
         client.loop_start()
         clients.append(client)
     try:

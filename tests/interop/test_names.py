@@ -10,6 +10,7 @@ from contextlib import closing
 
 from support.cpp import CppYarp
 from support.name_line import new_service, serve_names
+from support.wait import HANG
 
 from yarpy.contact import Contact
 from yarpy.names.client import YarpNameClient
@@ -141,7 +142,7 @@ def cpp_server_on(client: CppYarp, ports: str, rules: str) -> Iterator[None]:
     """A C++ name server on files that exist: it refuses to be told an address then."""
     arguments = ("--read", "--portdb", ports, "--subdb", rules)
     with client.popen(*arguments, program="yarpserver") as process:
-        deadline = time.monotonic() + 10
+        deadline = time.monotonic() + HANG
         while True:
             try:
                 socket.create_connection((client.host, client.port), 1).close()
@@ -242,7 +243,7 @@ def test_replies_are_those_of_a_cpp_server(cpp_server: CppYarp) -> None:
     """The same random commands to both, byte for byte."""
     rnd = random.Random(20)
     service = new_service(cpp_server.port)
-    with socket.create_connection((cpp_server.host, cpp_server.port), 5) as connection:
+    with socket.create_connection((cpp_server.host, cpp_server.port), HANG) as connection:
         lines = connection.makefile("rb")
 
         def ask(text: str) -> bytes:

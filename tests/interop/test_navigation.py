@@ -80,7 +80,7 @@ def test_navigation(network: CppYarp) -> None:
             assert client.target() == Place("kitchen", 2.0, 0.0, 0.0)
             assert client.target_from_here()[1:] == (0.0, 0.0)
             assert client.waypoints("glob").waypoints[0].x == 2.0
-            client.suspend(1.0)
+            client.suspend(60.0)
             assert base.status() == "paus"
             client.resume()
             client.stop()

@@ -111,6 +111,7 @@ def test_they_wire_our_ports(peer: CppProgram) -> None:
         # By receiver: the sender is not asked.
         source.connect("/in")
         assert peer.do("yarp.Network.disconnectInput('/in', '/out', True)") == 0
+        wait_until(lambda: not source.outputs, what="the sender sees it, too")
         time.sleep(1.2)
         assert sink.inputs == [], "what was disconnected on purpose stays so"
         assert source.outputs == []

@@ -70,7 +70,7 @@ with yarpy.Port("/networks/out") as port:
     port.connect("/networks/{name}", "{carrier}")
     print("ready", port.contact.host, flush=True)
     import time
-    for _ in range(50):  # a receiver joins its group a moment after it was connected
+    while True:  # a receiver joins its group a moment after it was connected
         port.write(["hello", "{carrier}"])
         time.sleep(0.05)
 """

@@ -173,7 +173,7 @@ def test_head_is_moved_and_asked_with_netcat(head: yarpy.RpcServer) -> None:
       echo d
       echo get encs
       # pause to see results
-      sleep 0.5
+      sleep 3
     }} | {program("nc")} -q 0 127.0.0.1 {head.contact.port}"""
     done = subprocess.run(["sh", "-c", script], capture_output=True, timeout=HANG, check=True)
     assert done.stdout.decode().splitlines() == [

@@ -207,5 +207,5 @@ def test_the_tools(network: CppYarp) -> None:
         with yarpy.RpcClient("/asked") as client:
             process.write_line('fine "thank you" 5')
             assert client.call("how", "are", "you", timeout=HANG) == ["fine", "thank you", 5]
-        process.stop()  # its output is block buffered: only now it is all there
-        assert "Message: how are you\nReply: " in process.stdout
+        process.stop()  # its output is block buffered: only now it says it all
+        wait_until(lambda: "Message: how are you\nReply: " in process.stdout)

@@ -175,7 +175,7 @@ def test_clean_removes_the_dead_only(network: CppYarp) -> None:
         other.wait_line("ready")
         other.kill()
         assert yarpy.query("/other") is not None
-        cleaned = network.run("clean", "--timeout", "1")
+        cleaned = network.run("clean", "--timeout", "10")
         assert cleaned.returncode == 0
         assert re.search(
             "Testing /other at .*\n.* No response, removing port /other", cleaned.stdout

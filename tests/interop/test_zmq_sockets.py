@@ -103,7 +103,7 @@ def test_a_sub_gets_what_a_port_writes(out: yarpy.Port, sockets: Sockets) -> Non
         found = [socket.recv_multipart() for _ in range(100)]
         assert found == [[b"/out", b'[%d, "text"]' % number] for number in range(100)]
     assert not other.poll(50)
-    assert [link.stats.messages for link in out.outputs] == [100, 100, 0]
+    wait_until(lambda: [link.stats.messages for link in out.outputs] == [100, 100, 0])
     every.unsubscribe(b"")
     link = out._hub.outputs.links[0]
     wait_until(lambda: not link.carrier._wanted)
@@ -197,8 +197,8 @@ def test_a_port_dials_sub_and_pull(out: yarpy.Port, sockets: Sockets) -> None:
     sub, at = sockets.bound(zmq.SUB)
     sub.subscribe(b"cam")
     out.connect(f"zmq+pub.camera://{at}")
-    sub.poll(50)  # a bound SUB says what it wants only when its program looks
-    wait_until(lambda: out._hub.outputs.links[0].carrier._wanted)
+    # A bound SUB says what it wants only when its program looks.
+    wait_until(lambda: sub.poll(1) or out._hub.outputs.links[0].carrier._wanted)
     pull, at = sockets.bound(zmq.PULL)
     out.connect(f"zmq+push://{at}")
     out.write([1])

@@ -168,7 +168,7 @@ class Process:
         self._popen.wait(HANG)
         self.end_input()
 
-    def stop(self, grace: float = 2.0) -> None:
+    def stop(self, grace: float = 5.0) -> None:
         """End the program and all it started: ask, wait `grace` seconds, then kill."""
         # The children are listed first: when their parent is gone nobody knows whose they were.
         family = [*descendants(self.pid), self.pid]

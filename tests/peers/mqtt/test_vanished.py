@@ -60,11 +60,11 @@ def test_a_silent_reader_is_taken_for_gone(
 @pytest.mark.parametrize("reads", [False, True])
 def test_pings_are_signs_of_life(names: yarpy.LocalNames, reads: bool) -> None:
     kind = yarpy.Port if reads else yarpy.BufferedPort
-    with kind("/p", names=names) as port, client(port, 1) as sock:
+    with kind("/p", names=names) as port, client(port, 2) as sock:
         if reads:
             subscribed(sock)
-        for _ in range(5):
-            sock.settimeout(0.5)
+        for _ in range(6):  # longer than the three seconds after which it would be gone
+            sock.settimeout(0.6)
             with pytest.raises(TimeoutError):
                 sock.recv(1)
             sock.settimeout(HANG)

@@ -20,7 +20,7 @@ from support.ros_link import (
     taken_header,
     welcomed,
 )
-from support.wait import HANG
+from support.wait import HANG, wait_until
 
 import yarpy
 from yarpy.errors import AccessRefused, DecodeError, RemoteProtocolError, YarpError
@@ -361,5 +361,9 @@ def test_what_does_not_fit_counts_as_a_drop(monkeypatch: pytest.MonkeyPatch) -> 
         writer.write([42])
         writer.write("fits")
         assert reader.read(timeout=HANG).value == "fits"
-        stats = writer.outputs[0].stats
-        assert (stats.messages, stats.drops) == (1, 1)
+
+        def counted() -> bool:  # a message is, behind sending it
+            stats = writer.outputs[0].stats
+            return (stats.messages, stats.drops) == (1, 1)
+
+        wait_until(counted)

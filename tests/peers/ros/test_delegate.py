@@ -94,16 +94,18 @@ def test_publishers_services_and_odd_names(server: yarpy.NameServer, graph: RosG
     ]
     for port in ports:
         port.announce()
-    wait_until(lambda: graph.master.service("/srv"), HANG, "registered")
-    publishers, subscribers, services = graph.master.state()
-    assert [each for each in publishers if each[1] == ["/odd"]] == [["/a__b", ["/odd"]]]
-    assert [each for each in services if each[1] == ["/odd"]] == [["/srv", ["/odd"]]]
-    assert not any("/odd" in nodes for _, nodes in subscribers)
+
+    def of_odd() -> list[list[str]]:
+        """The topics that it publishes, that it subscribes to, and its services."""
+        state = graph.master.state()
+        return [[name for name, nodes in kind if "/odd" in nodes] for kind in state]
+
+    wait_until(lambda: of_odd() == [["/a__b"], [], ["/srv"]], HANG, "registered")
     where = graph.master.service("/srv")
     assert where is not None and where.port == ports[2].number
     ports[0].close()  # without its node nobody can ask for its topics
-    wait_until(lambda: graph.master.service("/srv") is None, HANG, "unregistered")
-    assert not any("/odd" in nodes for kind in graph.master.state() for _, nodes in kind)
+    wait_until(lambda: of_odd() == [[], [], []], HANG, "unregistered")
+    assert graph.master.service("/srv") is None
     for port in ports[1:]:
         port.close()
 

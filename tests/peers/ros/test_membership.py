@@ -102,6 +102,7 @@ def test_a_stranger_who_names_many_publishers_starts_few_threads(
 ) -> None:
     silent = [socket.create_server(("127.0.0.1", 0)) for _ in range(32)]
     uris = [f"http://127.0.0.1:{each.getsockname()[1]}/" for each in silent]
+    wait_until(lambda: not _dialling())  # of tests before
     with Node("/popular") as node:
         node.subscriber("/many", "std_msgs/String")
         (membership,) = node._node.members

@@ -105,7 +105,7 @@ def test_rosbag_plays_what_we_wrote(graph: RosGraph, node: Node, tmp_path: Path)
         for number in range(5):
             bag.write("/ours", number, 100.0 + number / 100, "std_msgs/Int32")
     heard = node.subscriber("/ours")
-    with start(graph, PLAY, "-d", "1", str(path)):
+    with start(graph, PLAY, "--delay=0", "--wait-for-subscribers", str(path)):
         assert [heard.take(HANG).data for _ in range(5)] == [*range(5)]
 
 

@@ -99,7 +99,9 @@ def test_a_server_that_goes(graph: RosGraph, monkeypatch: pytest.MonkeyPatch) ->
             assert client.wait_for_server(HANG)
             goal = client.send([1])
             wait_until(lambda: goal.status == Status.ACTIVE)
-        if not goal.done:
-            with pytest.raises(LinkClosed, match="went away"):
-                goal.result(HANG)
-            assert goal.status == Status.LOST
+        try:  # its last words may come, and may not
+            goal.result(HANG)
+        except LinkClosed as error:
+            assert "went away" in str(error) and goal.status == Status.LOST
+        else:
+            assert goal.done

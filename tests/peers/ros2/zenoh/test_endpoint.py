@@ -353,15 +353,14 @@ def test_topics_of_an_independent_node(router: int, part: Participant, tmp_path:
         yarpy.BufferedPort("/in", strict=True) as reader,
     ):
         hears.ready(), says.ready()
+        graph = part.graph
+        wait_until(lambda: graph.endpoints("/chatter", "MS") and graph.endpoints("/news", "MP"))
         out.connect("ros2://chatter")  # the graph says which type it is
         reader.listen_to("ros2://news")
-        for _ in range(200):
-            out.write(yarpy.Bottle(["grüße"]))
-            if "grüße" in hears.said:
-                break
-            time.sleep(0.05)
+        wait_until(lambda: out.write(yarpy.Bottle(["grüße"])) and "grüße" in hears.said)
         assert hears.said[1] == "grüße"
-        says.write_line("hello from there")
+        # It may hear of us later than we of it.
+        wait_until(lambda: says.write_line("hello from there") or reader.waiting)
         assert reader.read(timeout=HANG).value == "hello from there"
         with Peer(router, tmp_path, "list") as lists:
             wait_until(lambda: lists.said)
@@ -384,6 +383,7 @@ def test_a_late_subscriber_of_an_independent_node(
         out.write("just before")
         with Peer(router, tmp_path, "hear", "/kept", "latched=1") as hears:
             hears.ready()
+            wait_until(lambda: part.graph.endpoints("/kept", "MS"))
             out.write("after")
             wait_until(lambda: "after" in hears.said)
             assert [text for text in hears.said if text != "ready"] == ["just before", "after"]
@@ -422,16 +422,17 @@ def test_the_quality_of_service_of_an_independent_node(
         wait_until(lambda: part.graph.endpoints(up, "MS") and part.graph.endpoints(down, "MP"))
         if order == "yarpy last":
             join()
-        peer.write_line("hello from there")
+        # It may hear of us later than we of it.
+        wait_until(lambda: peer.write_line("hello from there") or reader.waiting)
         assert reader.read(timeout=HANG).value == "hello from there"
-        for number in range(200):
-            out.write(f"hello {number}")
-            with contextlib.suppress(AssertionError):
-                wait_until(lambda: len(peer.said) > 1, 0.05)
-                break
-        assert str(peer.said[1]).startswith("hello")
-        (listening,) = part.graph.endpoints(down, "MS")
-        assert listening.qos.latched is ("transient" in qos)
+        wait_until(lambda: out.write("hello") and len(peer.said) > 1)
+        assert peer.said[1] == "hello"
+        wait_until(
+            lambda: (
+                [one.qos.latched for one in part.graph.endpoints(down, "MS")]
+                == ["transient" in qos]
+            )
+        )
 
 
 def test_services_of_an_independent_node(router: int, part: Participant, tmp_path: Path) -> None:
@@ -442,6 +443,7 @@ def test_services_of_an_independent_node(router: int, part: Participant, tmp_pat
     ):
         server.listen_to(f"ros2://times~{ADD}")
         serves.ready(), calls.ready()
+        wait_until(lambda: part.graph.endpoints("/add", "SS"))
         with yarpy.RpcClient("ros2://add", name="/client") as client:
             assert client.ask([5, 37]).value == 42  # type: ignore[union-attr]
         calls.write_line("6 7")
