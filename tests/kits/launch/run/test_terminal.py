@@ -85,15 +85,14 @@ def test_what_was_said_last_is_shown_though_the_end_is_known(
     assert shown == ["one\n", "two\n", "three\n"]
 
 
-@pytest.mark.parametrize("after", ["stdout", "stdin"])
 def test_one_that_ends_while_its_terminal_comes(
-    stdout: yarpy.Port, after: str, monkeypatch: pytest.MonkeyPatch
+    stdout: yarpy.Port, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     connect: Callable[..., object] = yarpy.connect
 
     def connect_and_end(*ends: str) -> None:
         connect(*ends)
-        if any(end.endswith(f"/{after}") for end in ends):
+        if stdout.name in ends:
             ended(stdout, "bye")
 
     monkeypatch.setattr(yarpy, "connect", connect_and_end)

@@ -16,7 +16,7 @@ from typing import Final
 
 import yarpy
 from yarpy.data.text import plain_text
-from yarpy.errors import LinkClosed, UnknownName, YarpError
+from yarpy.errors import YarpError
 from yarpy.log import readable
 
 _AHEAD: Final = 10_000  # lines that the program may be ahead of what is shown
@@ -45,9 +45,8 @@ def attach(uuid: str) -> int:
         yarpy.BufferedPort(f"{uuid}/stdio:i", callback=hear, on_connection=see) as heard,
         yarpy.Port(f"{uuid}/stdio:o") as typed,
     ):
-        yarpy.connect(f"{uuid}/stdout", heard.name)
-        with suppress(UnknownName, LinkClosed):  # it has ended: what it has said is there
-            yarpy.connect(typed.name, f"{uuid}/stdin")
+        yarpy.connect(typed.name, f"{uuid}/stdin")
+        yarpy.connect(f"{uuid}/stdout", heard.name)  # for which one that has ended has waited
         threading.Thread(target=_type, args=(typed,), name="terminal", daemon=True).start()
         try:
             while (text := said.get()) is not None:
