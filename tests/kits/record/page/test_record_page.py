@@ -78,6 +78,7 @@ def test_a_person_pauses_marks_splits_and_stops(
         wait_until(lambda: row.locator("td").nth(2).inner_text() == "1")
         assert page.locator("#ports tr.waiting").inner_text().startswith("/late")
         page.get_by_text("/late is not there yet").wait_for()
+        page.get_by_role("button", name="Pause").wait_for()  # whoever may use keys has buttons
         page.keyboard.press("Space")
         page.get_by_role("button", name="Go on").wait_for()
         assert recorder.paused
