@@ -39,7 +39,7 @@ from yarpy.transports.inbox import Inbox
 
 log = logger("yarpy.ros2")
 
-TIMEOUT: Final = 2.0  # seconds for others to be found, where nobody says more
+TIMEOUT: Final = 2.0  # seconds for others to be found, where the call has no time limit
 _LONG: Final = 10.0  # seconds of each wait that has no end
 ROOM: Final = 100  # messages that the library keeps until they are taken, and counted
 CHANGING: Final = 1.0  # seconds for others to hear of a new writer or reader
@@ -77,8 +77,8 @@ class DdsEndpoint(Inbox):
         """Find out about the type, and join. Raises UnknownName, UnknownType, DecodeError,
         PortClosed."""
         left = scope.remaining() if self.role == SUBSCRIBER else math.inf
-        patience = 0.0 if type_ else TIMEOUT if left == math.inf else left
-        deadline = time.monotonic() + patience
+        seconds = TIMEOUT if left == math.inf else left
+        deadline = time.monotonic() + (0.0 if type_ else seconds)
         while not (seen := self._part.seen(self.name, self._peers)) and time.monotonic() < deadline:
             scope.sleep(0.05)
         with self._opening:
