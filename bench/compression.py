@@ -80,6 +80,8 @@ def share(work: Callable[[], object]) -> float:
 
     thread = threading.Thread(target=count)
     thread.start()
+    while not counts[0]:
+        time.sleep(0.001)
     alone = rate(lambda: time.sleep(0.1))
     beside = rate(work)
     stop.set()

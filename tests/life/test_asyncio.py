@@ -18,8 +18,12 @@ def names() -> yarpy.LocalNames:
     return yarpy.LocalNames()
 
 
+asked_slowly = threading.Event()
+
+
 async def answer(message: yarpy.Message) -> object:
     if message.value == ["slow"]:
+        asked_slowly.set()
         await asyncio.Event().wait()
     return message.value
 
@@ -131,10 +135,11 @@ def test_the_time_limit_of_a_question_counts_while_an_earlier_one_waits(
             aio.RpcClient("/server", names=names) as client,
         ):
             await client.open()
+            asked_slowly.clear()
             endless = asyncio.create_task(client.call("slow"))
-            await asyncio.sleep(0)
+            await asyncio.to_thread(asked_slowly.wait, HANG)
             with pytest.raises(yarpy.Timeout, match="earlier question"):
-                await asyncio.wait_for(getattr(client, verb)("quick", timeout=0.05), HANG)
+                await asyncio.wait_for(getattr(client, verb)("quick", timeout=0.3), HANG)
             endless.cancel()
 
     asyncio.run(main())

@@ -35,7 +35,8 @@ def test_set(here, ports, monkeypatch):
         "yarpy.platform.scheduling.schedule", lambda tid, *granted: asked.append(granted)
     )
     assert here("sched", "set", *ports, "--src", "FIFO:30", "--des", "RR:2") == (0, "", "")
-    assert asked == [(1, 30), (2, 2)]
+    # The sender's thread is new, and may also ask by itself.
+    assert sorted({*asked}) == [(1, 30), (2, 2)]
 
 
 def test_refused(here, ports, monkeypatch):

@@ -104,7 +104,7 @@ def test_nothing_is_asked_before_an_answer_can_come(places: tuple[str, str]) -> 
 
     def serve() -> None:
         out = None
-        while len(seen) < 4:
+        while not seen or len(seen[-1]) == 1:  # until the question
             reply_to, *frames = asked.receive(HANG)
             seen.append(frames)
             if len(seen) > 2:  # the first answers are lost
@@ -117,7 +117,8 @@ def test_nothing_is_asked_before_an_answer_can_come(places: tuple[str, str]) -> 
     thread.start()
     assert caller.ask([b"only once"], HANG) == [b"only once"]
     thread.join(HANG)
-    assert seen == [[b"1"], [b"1"], [b"1"], [b"2", b"only once"]]
+    # On a busy machine the first answer that is sent may come too late.
+    assert len(seen) >= 4 and seen == [[b"1"]] * (len(seen) - 1) + [[b"2", b"only once"]]
     caller.close(), asked.close()
 
 

@@ -4,9 +4,11 @@ from __future__ import annotations
 
 import logging
 import socket
+import threading
 import time
 from collections.abc import Iterator
 from contextlib import contextmanager
+from typing import Any
 
 import pytest
 from support.listener import listening
@@ -18,7 +20,7 @@ from yarpy import BufferedPort, Port, RpcClient, RpcServer
 from yarpy.contact import Contact
 from yarpy.errors import LinkClosed, Timeout, WrongPort
 from yarpy.nameserver.local import LocalNames
-from yarpy.port.connect import identity
+from yarpy.port.connect import identity, probe
 from yarpy.route import Route
 
 SETTLED = 1.5  # seconds in which a connection that is dialled again would be there long since
@@ -176,6 +178,29 @@ def test_who_cannot_say_its_name_is_not_dialled_again(
                 assert toaster.address in caplog.text or target in caplog.text
         time.sleep(0.5)
         assert not out.outputs
+
+
+def test_what_breaks_while_its_listener_is_asked_comes_back(
+    names: LocalNames, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """The answer comes from a busy machine, after the connection has broken."""
+    introduce, asked = probe.introduce, threading.Event()
+
+    def late(*arguments: Any) -> probe.Listener:
+        assert asked.wait(HANG)
+        return introduce(*arguments)
+
+    monkeypatch.setattr(probe, "introduce", late)
+    # The receiver, which knows no other names, asks for nothing.
+    with BufferedPort("/in", names=LocalNames()) as in_, Port("/out", names=names) as out:
+        out.connect(f"/{in_.address}")
+        wait_until(lambda: in_.inputs)
+        break_inputs(in_)
+        wait_until(lambda: not out.outputs)
+        time.sleep(0.3)
+        assert not out.outputs, "nobody knows yet who answers there"
+        asked.set()
+        assert out.wait_for_outputs(timeout=HANG)
 
 
 def test_a_silent_program_at_a_port_s_number_gets_nothing(

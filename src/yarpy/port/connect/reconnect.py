@@ -274,6 +274,8 @@ class Reconnector:
     def _dial_again(self, item: Lost, peer: str) -> bool:
         """Dial a receiver, or a camera that we fetch from, once more; not if somebody else does."""
         hub, route = item.hub, item.route
+        if not identity.has_proof(route):  # it broke while its listener was being asked
+            return _is_left(hub, route, item.incoming)
         with hub.callbacks.later(), hub.dialling.alone(peer, wait=False) as alone:
             if not alone:
                 return False
@@ -325,30 +327,32 @@ def output_lost(hub: Hub, route: Route) -> None:
     """An output broke without anybody asking for it."""
     if route.spec.log is not None:
         return
-    if not identity.has_proof(route):
-        _leave(hub, "to", route.target)
-        return
-    RECONNECTOR.add(hub, route, incoming=False)
+    if not _is_left(hub, route, incoming=False):
+        RECONNECTOR.add(hub, route, incoming=False)
 
 
 def input_lost(hub: Hub, route: Route, gone: bool = False) -> None:
     """An input ended without a goodbye; `gone`: its sender knows nothing of it any more."""
     if is_pulled(route) and route.declared.topic:
         return  # its node dials publishers again
-    if is_pulled(route) and not identity.has_proof(route):
-        _leave(hub, "from", route.source)
-    elif is_pulled(route) or (route.source.startswith("/") and not _is_address(route.source)):
+    if is_pulled(route):
+        if not _is_left(hub, route, incoming=True):
+            RECONNECTOR.add(hub, route, incoming=True, gone=gone)
+    elif route.source.startswith("/") and not _is_address(route.source):
         RECONNECTOR.add(hub, route, incoming=True, gone=gone)
 
 
-def _leave(hub: Hub, way: str, peer: str) -> None:
+def _is_left(hub: Hub, route: Route, incoming: bool) -> bool:
+    """Return whether a connection that broke is not dialled again, which its log tells then: nobody
+    could tell whether the same port answers. One that is being asked for its name may still say."""
+    if identity.is_asked(route) or identity.has_proof(route):
+        return False
     log.warning(
         "%s: the connection %s %s broke and is not dialled again by itself: what listened there "
         "did not say its name, so nobody could tell whether it is the same again",
-        hub.name,
-        way,
-        peer,
+        *(hub.name, *(("from", route.source) if incoming else ("to", route.target))),
     )
+    return True
 
 
 def _is_address(name: str) -> bool:

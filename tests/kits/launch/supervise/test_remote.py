@@ -219,7 +219,7 @@ def test_nobody_knows_how_a_program_of_cpp_has_ended(
 def test_a_start_that_is_never_answered_leaves_nothing(
     runner: RemoteRunner, network: yarpy.LocalNames, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(remote, "STARTING", 0.3)
+    monkeypatch.setattr(remote, "STARTING", 1.0)  # the server is reached by then
     cpp = Cpp(network)
     cpp.slow.clear()
     with cpp.server:
@@ -238,7 +238,7 @@ def test_a_start_that_was_never_answered_is_tried_again(
     cpp.slow.clear()
     with cpp.server:
         with monkeypatch.context() as patch:
-            patch.setattr(remote, "STARTING", 0.3)
+            patch.setattr(remote, "STARTING", 1.0)
             with pytest.raises(Timeout):
                 Started(runner, "sleep", "600")
         cpp.slow.set()

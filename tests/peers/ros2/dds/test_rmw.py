@@ -15,7 +15,7 @@ FIBONACCI = "example_interfaces/action/Fibonacci"
 def count(goal: Goal) -> list[Any]:
     numbers = [0, 1]
     while len(numbers) < goal.request.order:
-        numbers.append(numbers[-1] + numbers[-2])
+        numbers.append((numbers[-1] + numbers[-2]) % 2**31)
         goal.feedback([numbers])
         if goal.wait(0.001):
             return goal.canceled([numbers])  # type: ignore[return-value]
