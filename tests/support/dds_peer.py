@@ -9,7 +9,8 @@ python dds_peer.py obey                does what the lines of its input say, eac
     ["reader", ID, TOPIC, RELIABILITY, DURABILITY, DEPTH]    DURABILITY: volatile, transient_local
                                   and perhaps {"deadline", "lifespan", "lease": milliseconds},
                                   and {"type": "Int32"} instead of String, or "Growing": one
-                                  that is called String, too; {"xcdr2": true} takes that alone
+                                  that is called String, too; "Adding", at a service: requests
+                                  that may grow; {"xcdr2": true} takes that alone
     ["events", ID]                 what the library counts of its events, by name
     ["write", ID, TEXT ...]        and waits until reliable readers have confirmed it
     ["close", ID]
@@ -38,7 +39,7 @@ from cyclonedds.core import (
 from cyclonedds.domain import DomainParticipant
 from cyclonedds.idl import IdlStruct
 from cyclonedds.idl.annotations import appendable
-from cyclonedds.idl.types import int32
+from cyclonedds.idl.types import int32, int64
 from cyclonedds.pub import DataWriter
 from cyclonedds.sub import DataReader
 from cyclonedds.topic import Topic
@@ -64,7 +65,19 @@ class Growing(IdlStruct, typename="std_msgs.msg.dds_.String_"):
     data: str
 
 
-TYPES: dict[str, Any] = {"String": String_, "Int32": Int32_, "Growing": Growing}
+@dataclass
+@appendable
+class Adding(IdlStruct, typename="example_interfaces.srv.dds_.AddTwoInts_Request_"):
+    a: int64
+    b: int64
+
+
+TYPES: dict[str, Any] = {
+    "String": String_,
+    "Int32": Int32_,
+    "Growing": Growing,
+    "Adding": Adding,
+}
 
 
 def say(*words: object) -> None:
@@ -147,7 +160,8 @@ def obey() -> None:
                 said = more[0] if more else {}
                 key = (topic, TYPES[said.pop("type", "String")])
                 if key not in topics:
-                    topics[key] = Topic(part, f"rt{topic}", key[1])
+                    at = f"rq{topic}Request" if key[1] is Adding else f"rt{topic}"
+                    topics[key] = Topic(part, at, key[1])
                 qos = qos_of(reliability, durability, depth, said)
                 made = DataWriter if verb == "writer" else DataReader
                 held[name] = made(part, topics[key], qos=qos)

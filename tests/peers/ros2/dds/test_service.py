@@ -6,6 +6,7 @@ import threading
 from typing import Any
 
 import pytest
+from support.dds_program import Peer
 from support.wait import HANG, wait_until
 
 import yarpy
@@ -14,6 +15,7 @@ from yarpy.peers import ros2
 from yarpy.peers.ros2.dds.service import DdsCaller
 from yarpy.peers.ros2.exchange import Question
 from yarpy.peers.ros2.name import Node
+from yarpy.peers.ros2.token import SUBSCRIBER
 
 ADD = "example_interfaces/srv/AddTwoInts"
 
@@ -75,6 +77,18 @@ def test_another_type_is_named(here: None, own: str) -> None:
         node.service(f"{own}/x", "std_srvs/srv/Trigger", lambda request: [True, ""])
         with pytest.raises(UnknownName, match="served as std_srvs::srv::dds_::Trigger_Request_"):
             node.call(f"{own}/x", ADD, [1, 2])
+
+
+def test_requests_that_may_grow_are_named(peer: Peer, own: str) -> None:
+    """Those of ROS 2 do not, and the library keeps both apart."""
+    with ros2.Node(own, rmw="dds") as node:
+        client = node.client(f"{own}/x", ADD)
+        peer.do("reader", own, f"{own}/x", "reliable", "volatile", 10, {"type": "Adding"})
+        seen = client._part.endpoints
+        wait_until(lambda: any(f"{own}/x" in one.topic_name for one in seen(SUBSCRIBER)))
+        with pytest.raises(UnknownName, match="type of the same name, but its fields differ, or"):
+            client.call([1, 2], timeout=0)
+    peer.do("close", own)
 
 
 def test_who_goes_during_a_call(here: None, own: str) -> None:

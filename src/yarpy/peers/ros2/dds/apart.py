@@ -35,13 +35,23 @@ def apart(
     """Yield those whom a reader or writer of ours, `entity`, is kept apart from by a policy of
     `WHY`; `class_`: of its type; `peers`: PUBLISHER or SUBSCRIBER."""
     met = _met(entity, "subscription" if peers == SUBSCRIBER else "publication")
-    ours = class_.__idl__.get_type_id()
     for sample in part.endpoints(peers):
         if sample.topic_name != f"rt{key.name}" or sample.type_name != key.type:
             continue
-        differs = sample.type_id != ours if policy == TYPE else not _takes_first(sample.qos)
-        if differs and sample.key not in met:
+        if _differs(sample, class_, policy) and sample.key not in met:
             yield part.token(sample, peers)
+
+
+def apart_by(sample: Any, class_: Any) -> str:
+    """Return the policy of `WHY` that may keep a reader or writer of somebody, whose type has the
+    name of ours, apart from those of `class_`; "" if none does."""
+    return next((policy for policy in WHY if _differs(sample, class_, policy)), "")
+
+
+def _differs(sample: Any, class_: Any, policy: str) -> bool:
+    if policy == TYPE:
+        return bool(sample.type_id != class_.__idl__.get_type_id())
+    return not _takes_first(sample.qos)
 
 
 def _takes_first(qos: Any) -> bool:

@@ -21,6 +21,7 @@ from typing import Any, Final, NamedTuple
 
 from yarpy.errors import UnknownName, UnknownType
 from yarpy.peers.ros2 import kind as kinds
+from yarpy.peers.ros2.dds.apart import WHY, apart_by
 from yarpy.peers.ros2.dds.library import delete, load, turn
 from yarpy.peers.ros2.dds.participant import Participant
 from yarpy.peers.ros2.dds.qos import dds_qos
@@ -228,6 +229,9 @@ class Pair:
                 )
             if item.type_name != self._key.type[:-1] + "_Request_":
                 return f"{self.name} is served as {item.type_name}, not as {kinds.shown(self._key)}"
+            if policy := apart_by(item, self._class):
+                why, remedy = WHY[policy]
+                return f"{self.name} is served as a type of the same name, but {why}; {remedy}"
         return f"nobody serves {self.name} as {kinds.shown(self._key)}"
 
     def _matching(self, half: Any, what: str) -> list[Any]:
