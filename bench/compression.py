@@ -74,7 +74,7 @@ def share(work: Callable[[], object]) -> float:
 
     def rate(while_: Callable[[], object]) -> float:
         before, started = counts[0], time.perf_counter()
-        while time.perf_counter() - started < WATCHED:
+        while time.perf_counter() - started < WATCHED or counts[0] == before:
             while_()
         return (counts[0] - before) / (time.perf_counter() - started)
 

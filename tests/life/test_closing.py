@@ -92,10 +92,13 @@ def test_others_get_what_was_written_though_one_takes_nothing() -> None:
         out.connect("/in", "tcp")
         for _ in range(20):
             out.write(["x" * 300_000], wait=True, timeout=0.02)
+        (late,) = [item.drops for item in out.stats.outputs if item.target == "/in"]
+        assert late < 20  # those for which a busy machine took longer than the time of the write
         out.close(timeout=LIMIT)
         past = books(out)
         came = in_._hub.inputs.past.as_dict
-        wait_until(lambda: came()["messages"] == 20)  # its thread may have the last ones in hand
+        # Its thread may have the last ones in hand.
+        wait_until(lambda: came()["messages"] == 20 - late)
         assert sum(past.values()) == 40
         assert past["unconfirmed"] <= 20
 

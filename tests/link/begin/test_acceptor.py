@@ -102,7 +102,7 @@ def test_more_than_are_served_are_refused(
                 refused.sendall(b"some word")
                 with suppress(ConnectionError):
                     assert refused.recv(9) == b""
-        assert threads() == 4
+        wait_until(lambda: threads() == 4)
         assert caplog.text.count("refuses more") == 1
         stack.close()
         wait_until(lambda: "takes connections again (5 times" in caplog.text)

@@ -30,7 +30,7 @@ def module(label: str, *words: str, **more: object) -> Module:
 
 def supervisor(*modules: Module, **more: object) -> Supervisor:
     found = Application("app", modules=[*modules])
-    return Supervisor(found, grace=1.0, **more)  # type: ignore[arg-type]
+    return Supervisor(found, **{"grace": 1.0, **more})  # type: ignore[arg-type]
 
 
 def all_in(running: Supervisor, state: str) -> bool:
@@ -161,7 +161,7 @@ def test_no_runner_for_another_computer() -> None:
 
 @PROC
 def test_a_hundred_programs(network: yarpy.LocalNames) -> None:
-    running = supervisor(*(module(f"s{n}") for n in range(100)), names=network)
+    running = supervisor(*(module(f"s{n}") for n in range(100)), names=network, grace=HANG)
     running.start()
     wait_until(lambda: all_in(running, "running"))
     began = time.monotonic()
