@@ -139,7 +139,7 @@ def test_the_last_lines_come_however_slowly_they_are_taken(
                 threading.Event().wait(0.2)
                 yield line
 
-    monkeypatch.setattr(local, "_LAST_WORDS", 0.05)
+    monkeypatch.setattr(local, "_HELD_OPEN", 0.05)
     monkeypatch.setattr(local, "Lines", Slow)
     started = python(runner, "print('one'); print('two')")
     assert started.wait() == 0 and started.lines == ["one", "two"]

@@ -207,7 +207,7 @@ class Cpp:
 def test_nobody_knows_how_a_program_of_cpp_has_ended(
     runner: RemoteRunner, network: yarpy.LocalNames, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(remote, "_LAST_WORDS", 0.1)  # nobody tells any
+    monkeypatch.setattr(remote, "_TELLING", 0.1)  # nobody tells any
     cpp = Cpp(network)
     with cpp.server:
         started = Started(runner, "sleep", "600")

@@ -26,7 +26,7 @@ from yarpy.platform.group import START, Group
 from yarpy.platform.process import KILL, signal_one
 
 GRACE: Final = 5.0  # seconds from SIGTERM to SIGKILL
-_LAST_WORDS: Final = 1.0  # seconds without a word in which somebody else holds the output open
+_HELD_OPEN: Final = 1.0  # seconds without a word in which somebody else holds the output open
 _LONGEST: Final = 60.0  # seconds for whoever takes the last lines
 _UNKILLABLE: Final = 2.0  # seconds after SIGKILL until a process is given up
 _POLL: Final = 0.02  # seconds between looks at what is left of a program
@@ -186,7 +186,7 @@ class LocalHandle:
         swept = time.monotonic()
         while reader.is_alive():
             now = time.monotonic()
-            if now - max(swept, self._read_last) > _LAST_WORDS or now - swept > _LONGEST:
+            if now - max(swept, self._read_last) > _HELD_OPEN or now - swept > _LONGEST:
                 return
             reader.join(_POLL)
 

@@ -24,7 +24,7 @@ from yarpy.wire.message import Packet
 
 KEPT: Final = 10_000  # lines for loggers that are late
 _FORWARDS: Final = "YARP_FORWARD_LOG_ENABLE"
-_LAST_WORDS: Final = 5.0  # seconds in which the port opens, if it has not, and the last lines leave
+_LEAVING: Final = 5.0  # seconds in which the port opens, if it has not, and the last lines leave
 
 
 class LogStream:
@@ -52,7 +52,7 @@ class LogStream:
 
     def close(self) -> None:
         """Send what is left, for a while."""
-        self._sender.close(_LAST_WORDS)
+        self._sender.close(_LEAVING)
 
     def _gap(self, lost: int) -> Packet:
         return Packet(Bottle([self._header, f"[WARNING] {lost} lines before this are lost\n"]))

@@ -32,7 +32,7 @@ AGAIN: Final = 1.0  # ... while the server does not answer
 ANSWER: Final = 3.0  # seconds that an answer may take
 STARTING: Final = 10.0  # ... that of a start
 _KILL: Final = 9  # what SIGKILL is there; this computer may have none
-_LAST_WORDS: Final = 5.0  # seconds until the server has told what was written before the end
+_TELLING: Final = 5.0  # seconds until the server has told what was written before the end
 _ABANDONED: Final = 300.0  # seconds in which a program that may have been started is looked for
 
 Line = Callable[[str], None]
@@ -290,7 +290,7 @@ class RemoteHandle:
 
     def _finish(self, code: int | None) -> None:
         # Its server connects beside the start, and may do so only now if it ended at once.
-        self._all_said.wait(_LAST_WORDS)
+        self._all_said.wait(_TELLING)
         self.port.close(0.0)
         with self._told:
             self._over = True

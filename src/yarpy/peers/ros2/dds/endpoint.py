@@ -64,8 +64,7 @@ class DdsEndpoint(Inbox):
         self._entity: Any = None
         self._shown: list[Any] = []  # readers or writers that are told of
         self._owned: tuple[Any, ...] = ()
-        self._mismatch: Any = None
-        self._look: Any = None  # at others of another type
+        self._mismatch: Mismatch | None = None  # looks at others of another type
         self.events = Events()
         self._news = 0  # the statuses that tell who has come or gone
         self._refusal = 0  # ... and that somebody cannot be heard
@@ -113,8 +112,7 @@ class DdsEndpoint(Inbox):
         self._entity = self._show(self._made())
         self._owned = (self._entity, self._topic)
         self._mismatch = Mismatch(self.port_name, self._key, strict=False)
-        self._look = self._mismatch.look
-        self._part.watch.add(self.name, self._peers, self._look)
+        self._part.watch.add(self.name, self._peers, self._mismatch.look)
 
     def _fitting(self) -> Qos:
         """The QoS for those who are there, unless one is said."""
@@ -179,9 +177,10 @@ class DdsEndpoint(Inbox):
             self.events.tell(event)
 
     def _tell_apart(self, entity: Any, policy: str) -> None:
-        part, class_, key = self._part, self._class, self._key
+        part, class_, key, mismatch = self._part, self._class, self._key, self._mismatch
+        assert mismatch is not None
         for token in apart(policy, part, entity, class_, key, self._peers):
-            self._mismatch.refused(token, *WHY[policy])
+            mismatch.refused(token, *WHY[policy])
 
     def close(self) -> None:
         self.interrupt()
@@ -189,7 +188,8 @@ class DdsEndpoint(Inbox):
             if self._closed:  # an interrupted one is not
                 return
             self._closed = True
-        self._part.watch.remove(self._look)
+        if self._mismatch is not None:
+            self._part.watch.remove(self._mismatch.look)
         for item in self._shown:
             self._part.pump.remove(item)
         self._part.discovery.remove(self.node, *self._shown)

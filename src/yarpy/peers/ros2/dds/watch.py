@@ -45,7 +45,7 @@ class Watch:
         for token in self._seen(name, kind):
             hear(token)
 
-    def remove(self, hear: Hear | None) -> None:
+    def remove(self, hear: Hear) -> None:
         """Call it no more."""
         with self._lock:
             self._heard = [item for item in self._heard if item[2] != hear]
