@@ -184,8 +184,8 @@ UNDECLARED: Final = Declared()
 class Route:
     """The two ends of one connection, and its carrier. `port` is the accepting side's TCP port,
     `host` its address, where it was dialled. `peer` is what the port that was dialled calls itself,
-    as far as it was asked and can say; `yarp4`: it is of C++ YARP 4. `declared` is what our port
-    says of itself."""
+    as far as it was asked and can say; `asked`: it is being asked; `yarp4`: it is of C++ YARP 4.
+    `declared` is what our port says of itself."""
 
     source: str
     target: str
@@ -193,6 +193,7 @@ class Route:
     port: int
     host: str
     peer: str = field(compare=False)
+    asked: bool = field(compare=False)
     yarp4: bool = field(compare=False)
     declared: Declared = field(compare=False)
 
@@ -212,7 +213,7 @@ class Route:
         self.port = port
         self.host = host
         self.peer = peer
-        self.yarp4 = False
+        self.asked = self.yarp4 = False
         self.declared = declared
 
     @property

@@ -21,7 +21,6 @@ from yarpy.route import Route
 from yarpy.threads import Thread
 
 TIMEOUT: Final = GREETING
-_asking: Final[set[int]] = set()  # the ids of routes whose listeners are being asked
 
 # What a name service knows of a name: the values of a property.
 Properties = Callable[[str, str], Iterable[object]]
@@ -77,11 +76,6 @@ def has_proof(route: Route) -> bool:
     return bool(route.peer) or is_nameless(route)
 
 
-def is_asked(route: Route) -> bool:
-    """Return whether the peer of a connection is being asked for its name."""
-    return id(route) in _asking
-
-
 def is_nameless(route: Route) -> bool:
     """Return whether what is at the other end of such a connection may be no port: a camera, which
     is sent nothing, or what has said by its protocol that it is of the right kind."""
@@ -99,13 +93,13 @@ def learn(contact: Contact, route: Route, key: bytes) -> None:
         except YarpError:
             pass  # it cannot say
         finally:
-            _asking.discard(id(route))
+            route.asked = False
 
-    _asking.add(id(route))
+    route.asked = True
     try:
         Thread(target=ask, name=f"yarpy who is {contact.address}", daemon=True).start()
     except BaseException:  # also out of a signal handler
-        _asking.discard(id(route))
+        route.asked = False
         raise
 
 

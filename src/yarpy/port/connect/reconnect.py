@@ -345,7 +345,7 @@ def input_lost(hub: Hub, route: Route, gone: bool = False) -> None:
 def _is_left(hub: Hub, route: Route, incoming: bool) -> bool:
     """Return whether a connection that broke is not dialled again, which its log tells then: nobody
     could tell whether the same port answers. One that is being asked for its name may still say."""
-    if identity.is_asked(route) or identity.has_proof(route):
+    if route.asked or identity.has_proof(route):
         return False
     log.warning(
         "%s: the connection %s %s broke and is not dialled again by itself: what listened there "
