@@ -268,7 +268,7 @@ def test_paho_reads_and_writes(out: yarpy.Port, reader: yarpy.BufferedPort) -> N
     for port in (out, reader):
         client = paho.Client(paho.CallbackAPIVersion.VERSION2, protocol=paho.MQTTv5)
         client.on_message = lambda client, data, message: heard.append(message.payload)
-        client.connect("127.0.0.1", port.contact.port, keepalive=2)
+        client.connect("127.0.0.1", port.contact.port, keepalive=3)
         client.loop_start()
         clients.append(client)
     try:

@@ -230,23 +230,26 @@ def test_pause_hover_and_time(browser: Browser) -> None:
             page.locator("#window").fill("1")
             box = page.locator("canvas").bounding_box()
             assert box is not None
-            found = []
-            for share in (0.4, 0.6, 0.8):
-                page.mouse.move(box["x"] + box["width"] * share, box["y"] + box["height"] / 2)
-                page.wait_for_timeout(300)
-                found.append(float(page.locator(".value").inner_text()))
-            assert found == sorted(found)
-            assert found[2] - found[0] == pytest.approx(
-                0.4 * box["width"] / (box["width"] - 70), abs=0.1
-            )
+            found: list[float] = []
+
+            def look() -> bool:
+                found.clear()
+                for share in (0.4, 0.6, 0.8):
+                    page.mouse.move(box["x"] + box["width"] * share, box["y"] + box["height"] / 2)
+                    page.wait_for_timeout(300)
+                    found.append(float(page.locator(".value").inner_text()))
+                seconds = 0.4 * box["width"] / (box["width"] - 70)
+                grow = found == sorted(found)
+                return grow and found[2] - found[0] == pytest.approx(seconds, abs=0.1)
+
+            wait_until(look, HANG, "a second is as wide as the page")
             # Dragging goes back in time, the wheel takes more of it.
             page.mouse.down()
             page.mouse.move(box["x"] + box["width"] * 0.95, box["y"] + box["height"] / 2)
             page.mouse.up()
             page.wait_for_timeout(300)
             page.mouse.move(box["x"] + box["width"] * 0.8, box["y"] + box["height"] / 2)
-            page.wait_for_timeout(300)
-            assert float(page.locator(".value").inner_text()) < found[2]
+            wait_until(lambda: float(page.locator(".value").inner_text()) < found[2])
             page.mouse.wheel(0, 100)
             wait_until(lambda: page.locator("#window").input_value() == "1.15")
             page.locator("h1").click()

@@ -86,7 +86,8 @@ def test_another_server_at_once_does_not_know_the_goal(
             threading.Thread(target=first.close, daemon=True).start()
             with pytest.raises(LinkClosed, match="went away"):
                 goal.result(HANG)
-            assert goal.status == Status.LOST and goal.forgotten
+            assert goal.status == Status.LOST
+            wait_until(lambda: goal.forgotten)
         first.close()
 
 
