@@ -232,7 +232,10 @@ def test_a_method_keeps_its_time_limit(kind: str, method: str, nobody: str):
 @pytest.mark.parametrize(("kind", "method"), [one for one in METHODS if one[1] != "close"])
 @pytest.mark.parametrize("end", ["interrupt", "close"])
 def test_whoever_ends_a_port_wakes_its_calls(kind: str, method: str, end: str, nobody: str):
+    begun = threading.Event()
+
     def called(port: Any) -> BaseException | None:
+        begun.set()
         try:
             CALLS[kind][method](port, nobody, 10.0)
         except yarpy.YarpError as error:
@@ -243,6 +246,7 @@ def test_whoever_ends_a_port_wakes_its_calls(kind: str, method: str, end: str, n
         over: list[tuple[BaseException | None, float]] = []
         thread = threading.Thread(target=lambda: over.append((called(port), time.monotonic())))
         thread.start()
+        assert begun.wait(HANG)
         thread.join(0.2)
         blocked = thread.is_alive()
         ended = time.monotonic()

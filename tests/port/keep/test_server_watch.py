@@ -125,7 +125,8 @@ def test_a_server_that_hangs_is_not_waited_for(client: Client, watch: ServerWatc
     client.go_away()
     for _ in range(50):
         assert watch.look(ports)
-    assert client.dialled == 2, "one attempt at a time"
+    wait_until(lambda: client.dialled == 2)
+    assert watch.look(ports) and client.dialled == 2, "one attempt at a time"
     other.go_away()
     other.there = True
     watch.look(ports)

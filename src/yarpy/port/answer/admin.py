@@ -272,7 +272,7 @@ def _pray(hub: Hub, request: Bottle) -> Bottle:
         [
             f"You begin praying to {name}.",
             "You finish your prayer.",
-            random.choice(_PRAYERS),
+            random.Random().choice(_PRAYERS),
         ]
     )
 

@@ -27,6 +27,8 @@ SILENCE: Final = (
 )
 SLOWER: Final = 1.3  # so much longer is each pause than the one before, and up to so much by chance
 
+_chance = random.Random()  # the numbers of `random` itself are the program's, which may have a seed
+
 
 @dataclass(slots=True, eq=False)
 class Lost:
@@ -50,7 +52,7 @@ class Lost:
         if self.back is not None and self.back + CALM > now:
             self.due = self.back + CALM
             return
-        self.due = now + self.pause * random.uniform(1.0, SLOWER)
+        self.due = now + self.pause * _chance.uniform(1.0, SLOWER)
         self.pause = min(self.pause * SLOWER, max(self.pause, LONGEST))
 
     def tell(self, reason: YarpError, then: str) -> None:

@@ -43,7 +43,7 @@ def server(sensor: Sensor, names: LocalNames) -> Iterator[AnalogSensorServer]:
 
 
 def first(names: LocalNames, source: str) -> yarpy.Message:
-    with yarpy.BufferedPort("/me", names=names) as port:
+    with yarpy.BufferedPort(f"/me{source}", names=names) as port:
         port.listen_to(source)
         message = port.read(HANG)
         assert message is not None
