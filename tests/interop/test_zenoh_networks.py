@@ -151,14 +151,15 @@ with (
             pass
 """
 LAB_PROGRAM = """
-import signal, threading, yarpy
-ended = threading.Event()
-signal.signal(signal.SIGINT, lambda *_: ended.set())
+import signal, time, yarpy
+ended = []  # an Event has a lock, which the main thread may hold where the signal comes
+signal.signal(signal.SIGINT, lambda *_: ended.append(True))
 with yarpy.Port("/lab/out") as out:
     out.connect("/robot/in", timeout=30)
     print("ready")
     taken = number = 0
-    while not ended.wait(0.01):
+    while not ended:
+        time.sleep(0.01)
         number += 1
         taken += out.write([number])
         print("sent", number)
