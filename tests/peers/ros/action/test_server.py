@@ -28,7 +28,8 @@ def say(*words):
 say("server", client.wait_for_server(rospy.Duration(60)))
 for number in map(int, sys.argv[2:]):
     told = []
-    client.send_goal(TestGoal(number), feedback_cb=lambda f: told.append(f.feedback))
+    with client.action_client.manager.list_mutex:  # it forgets what comes while it still sends
+        client.send_goal(TestGoal(number), feedback_cb=lambda f: told.append(f.feedback))
     if number < 0:
         while not told:
             rospy.sleep(0.01)
@@ -70,6 +71,34 @@ def test_a_client_of_actionlib(graph: RosGraph) -> None:
     assert found[101] == [Status.ABORTED, -1]
     state, told = found[-1]
     assert state == Status.PREEMPTED and told > 0
+
+
+def test_no_older_status_follows_a_newer_one(graph: RosGraph) -> None:
+    """A client takes a goal that is not listed any more for lost."""
+    told: list[int] = []
+    entered, newer = threading.Event(), threading.Event()
+
+    class Slow:
+        def write(self, message: Any) -> None:
+            goals = len(message.status_list)
+            if not goals and not entered.is_set():
+                entered.set()
+                newer.wait(0.5)
+            told.append(goals)
+            if goals:
+                newer.set()
+
+    with Node("/serves") as node, Node("/asks") as asker:
+        server = ActionServer(node, "/slow", "actionlib/Test", lambda goal: [1])
+        client = ActionClient(asker, "/slow", "actionlib/Test")
+        assert client.wait_for_server(HANG)
+        server._status, status = Slow(), server._status
+        assert entered.wait(HANG)
+        goal = client.send([1])
+        assert goal.result(HANG).result == 1
+        wait_until(lambda: 1 in told)
+        assert told == sorted(told)
+        server._status = status
 
 
 def test_a_client_of_ours(graph: RosGraph) -> None:

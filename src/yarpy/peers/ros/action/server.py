@@ -266,7 +266,8 @@ class ActionServer:
             self._recalled = {
                 id_: when for id_, when in self._recalled.items() if when >= now - REMEMBERED
             }
-        self._write(self._status, message)
+            # Not behind a newer one: a client takes a goal that is not listed any more for lost.
+            self._write(self._status, message)
 
     def _write(self, publisher: Any, message: Any) -> None:
         message.header.stamp = stamp_of(self._node.now())
