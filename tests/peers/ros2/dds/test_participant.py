@@ -236,10 +236,10 @@ def test_what_was_latched(topic: str) -> None:
         assert reader.read(timeout=HANG).value == "last"
 
 
-def test_what_is_wrong() -> None:
+def test_what_is_wrong(own: str) -> None:
     with yarpy.BufferedPort("/in") as reader:
-        with pytest.raises(UnknownName, match="nobody publishes /nobody over DDS"):
-            reader.listen_to("ros2+dds://nobody")
-        with pytest.raises(UnknownName, match="nobody serves /add over DDS"):
-            reader.connect("ros2+dds+srv://add")
+        with pytest.raises(UnknownName, match=f"nobody publishes {own} over DDS"):
+            reader.listen_to(f"ros2+dds:/{own}")
+        with pytest.raises(UnknownName, match=f"nobody serves {own} over DDS"):
+            reader.connect(f"ros2+dds+srv:/{own}")
         assert reader.stats.inputs == []
