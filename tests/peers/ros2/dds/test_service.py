@@ -12,6 +12,7 @@ from support.wait import HANG, wait_until
 import yarpy
 from yarpy.errors import DecodeError, LinkClosed, UnknownName
 from yarpy.peers import ros2
+from yarpy.peers.ros2.dds.pair import topics
 from yarpy.peers.ros2.dds.service import DdsCaller
 from yarpy.peers.ros2.exchange import Question
 from yarpy.peers.ros2.name import Node
@@ -85,7 +86,8 @@ def test_requests_that_may_grow_are_named(peer: Peer, own: str) -> None:
         client = node.client(f"{own}/x", ADD)
         peer.do("reader", own, f"{own}/x", "reliable", "volatile", 10, {"type": "Adding"})
         seen = client._part.endpoints
-        wait_until(lambda: any(f"{own}/x" in one.topic_name for one in seen(SUBSCRIBER)))
+        asked, _ = topics(f"{own}/x")
+        wait_until(lambda: any(one.topic_name == asked for one in seen(SUBSCRIBER)))
         with pytest.raises(UnknownName, match="type of the same name, but its fields differ, or"):
             client.call([1, 2], timeout=0)
     peer.do("close", own)
