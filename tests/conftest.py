@@ -30,6 +30,11 @@ pytest_plugins = ["support.browser"]
 LOGGER = logging.getLogger("yarpy")
 UNCONFIGURED = [*LOGGER.handlers], LOGGER.level, LOGGER.propagate
 
+if hasattr(os, "register_at_fork"):
+    # What foreign libraries have here waits for their threads when it is collected, and a forked
+    # child has none of them.
+    os.register_at_fork(before=gc.disable, after_in_parent=gc.enable)
+
 
 def pytest_addoption(parser: pytest.Parser) -> None:
     parser.addoption("--stage", choices=[*STAGES], help="only the tests of one stage")
