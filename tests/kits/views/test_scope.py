@@ -240,7 +240,7 @@ def test_pause_hover_and_time(browser: Browser) -> None:
                     found.append(float(page.locator(".value").inner_text()))
                 seconds = 0.4 * box["width"] / (box["width"] - 70)
                 grow = found == sorted(found)
-                return grow and found[2] - found[0] == pytest.approx(seconds, abs=0.25)
+                return grow and found[2] - found[0] == pytest.approx(seconds, abs=0.1)
 
             wait_until(look, HANG, "a second is as wide as the page")
             # Dragging goes back in time, the wheel takes more of it.
